@@ -36,7 +36,7 @@ void bough_deck_refuse(const bough_deck *deck, const char *names, const char *fo
 
 // -- words ----------------------------------------------------------------------------------------
 
-// Takes the next word off *at, quotes removed; false at the end of the line.
+// Reads the word at *at, without quotes, and moves past it; false at the end of the line.
 static bool next_word(const char **at, char word[WORD]) {
     const char *p = *at + strspn(*at, " \t,");
     if (*p == '\0') return false;
@@ -86,7 +86,7 @@ static bool is_comment(const char *line) {
     return *line == '\0' || strchr("!#%", *line);
 }
 
-// A rule or a comment, which has no value.
+// Whether the line is a rule or a comment.
 static bool has_no_value(const char *line) {
     line += strspn(line, " \t");
     return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0 || is_comment(line);
@@ -108,14 +108,14 @@ static int mend_line_ends(char *text) {
     return n;
 }
 
-// The line behind the first `n` that are no comments.
-static int behind(const bough_deck *deck, int n) {
+// The line after the first `n` that are not comments.
+static int line_after(const bough_deck *deck, int n) {
     int i = 0;
     for (; i < deck->n && n > 0; i++) n -= !is_comment(deck->line[i]);
     return i;
 }
 
-// The line of the list of output channels, behind which nothing has a name; else the number of lines.
+// The line of the list of output channels, after which no line has a name; the number of lines without one.
 static int output_list(const bough_deck *deck) {
     char word[WORD];
     int i = deck->first;
@@ -128,6 +128,7 @@ static int output_list(const bough_deck *deck) {
 
 bough_deck *bough_deck_open(bough_arena *arena, const char *path, int n_heading, bough_status *status) {
     if (!bough_is_ok(status)) return NULL;
+    // the whole file as text
     char why[BOUGH_INPUT_REASON];
     size_t size;
     char *text = bough_input_read(arena, path, MOST_BYTES, &size, why);
@@ -140,12 +141,13 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, int n_heading,
     const char **line = bough_arena_take(arena, (size_t)n * sizeof *line);
     const char *copy = bough_arena_string(arena, path);
     *deck = (bough_deck){.path = copy, .line = line, .n = n, .arena = arena, .status = status};
+    // its lines, and those that have names
     for (int i = 0; i < n; i++) {
         line[i] = text;
         text += strcspn(text, "\n");
         if (*text) *text++ = '\0';
     }
-    deck->first = behind(deck, n_heading);
+    deck->first = line_after(deck, n_heading);
     deck->last = output_list(deck);
     return deck;
 }
@@ -179,7 +181,7 @@ bough_deck bough_deck_part(const bough_deck *deck, const char *words) {
     return part;
 }
 
-// The first word of the line of that name; its line, -1 after a failure.
+// The first word of the line with that name; returns the line, -1 after a failure.
 static int value_of(const bough_deck *deck, const char *names, const char *what, char word[WORD]) {
     if (!deck || !bough_is_ok(deck->status)) return -1;
     int line = bough_deck_line(deck, names);
@@ -259,8 +261,8 @@ double bough_deck_switch_or(const bough_deck *deck, const char *names, double fa
 
 // -- files ----------------------------------------------------------------------------------------
 
-// Puts into *name (of `size`) how the folder spells it, where capitals are the only difference:
-// decks come from systems to which they are the same.
+// Replaces *name (of `size`) by its spelling in the folder where only capitals differ: decks come from
+// systems that do not distinguish them.
 static void respell(const char *folder, char *name, size_t size) {
     DIR *stream = opendir(folder);
     if (!stream) return;
@@ -272,7 +274,7 @@ static void respell(const char *folder, char *name, size_t size) {
     closedir(stream);
 }
 
-// Folder by folder, as far as they are there.
+// Respells the names of a path from left to right, as far as they exist.
 static void respell_path(char path[BOUGH_PATH_MAX]) {
     char part[BOUGH_PATH_MAX];
     for (size_t from = 0, n; path[from]; from += n + (path[from + n] == '/')) {
@@ -332,7 +334,7 @@ const char *bough_deck_path(const bough_deck *deck, const char *names) {
 
 // -- tables ---------------------------------------------------------------------------------------
 
-// Where each column stands in a line; false when one that must be there is not.
+// The position of each column in a line; false when a required one is missing.
 static bool find_columns(const char *line, const char *const *column, int n_column, int *place) {
     char word[WORD];
     for (int k = 0; k < n_column; k++) place[k] = -1;
@@ -351,7 +353,7 @@ bool bough_deck_is_comment(const bough_deck *deck, int line) {
     return line >= 0 && line < deck->n && is_comment(deck->line[line]);
 }
 
-// A comment, or units below the columns' names.
+// Whether the line is a comment, or has the units below the columns' names.
 static bool skipped(const char *line) { return is_comment(line) || line[strspn(line, " \t")] == '('; }
 
 static void read_row(const bough_deck *deck, int line, const char *const *column, int n_column,
@@ -383,6 +385,7 @@ static bool begins_with_number(const char *line) {
 
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n) {
     if (!deck || !bough_is_ok(deck->status)) return NULL;
+    // the line that names all columns
     int place[MOST_WORDS], line = deck->first;
     while (line < deck->last && !find_columns(deck->line[line], column, n_column, place)) line++;
     if (line == deck->last) {
@@ -390,6 +393,7 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
                         n_column > 1 ? column[1] : "");
         return NULL;
     }
+    // the rows below it
     double *table = bough_arena_doubles(deck->arena, (size_t)n * n_column);
     for (int i = 0; i < n && bough_is_ok(deck->status); i++) {
         do line++;

@@ -40,7 +40,7 @@ static bool calls_library(const bough_scene *scene) {
     return scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
 }
 
-// Of a process that ended without a result: by a signal, or because the library ended it.
+// The failure of a process that ended without a result: by a signal, or because the library ended it.
 static bough_status crash_of(const bough_scene *scene, int end) {
     const char *signal = WIFSIGNALED(end) ? strsignal(WTERMSIG(end)) : "the program ends";
     if (!calls_library(scene)) return bough_fail(BOUGH_INVALID, "the first steps crash: %s", signal);
@@ -50,7 +50,7 @@ static bough_status crash_of(const bough_scene *scene, int end) {
                       scene->control.library, signal);
 }
 
-// What a library prints belongs to no import.
+// Discards what a library prints.
 static void silence(void) {
     int null = open("/dev/null", O_RDWR);
     if (null < 0) return;
@@ -77,7 +77,7 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
     return got == (ssize_t)sizeof status ? status : crash_of(scene, end);
 }
 
-// Macro steps [s], and by how much the rotor may turn in one [rad].
+// Macro steps [s], and the largest rotation of the rotor in one [rad].
 static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
 enum { HALVINGS = 2 }; // of the macro step, where no tolerance is good enough
 
@@ -114,7 +114,7 @@ void bough_draft_tower(bough_draft *d, double foot) {
     fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
 }
 
-// Segments that shorten towards the tip: what other numbers err by is in docs/import.md.
+// Segments that shorten towards the tip; docs/import.md has the errors of other numbers of them.
 void bough_draft_blade_rod(bough_draft *d) {
     fprintf(d->file[BOUGH_IMPORT_SCENE], "    rod: {table: %s, segments: 32, grading: 0.2}\n",
             bough_import_name[BOUGH_IMPORT_BLADE]);
@@ -258,7 +258,7 @@ static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
                      fmin(steps * s->macro_step, s->duration), s->macro_step, s->master.rtol);
 }
 
-// With one tolerance after the other, until the errors are small enough: well below the scene's bound, since
+// Tries one tolerance after the other, until the errors are small enough: well below the scene's bound, since
 // a whole run may err by more than its first steps, unless there is no smaller tolerance. The scene's text
 // gets that tolerance.
 static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
@@ -286,7 +286,7 @@ static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *s
         d->macro_step, tolerance[N_TOLERANCE - 1], status.message);
 }
 
-// What the deck's own checks have let through.
+// Reads the scene as a run does, whose checks are more than the deck's, and tries it.
 static bough_status check_scene(bough_draft *d, const char *folder) {
     char path[BOUGH_PATH_MAX];
     bough_errors errors = {.arena = d->arena};
@@ -300,7 +300,7 @@ static bough_status check_scene(bough_draft *d, const char *folder) {
                       slash ? slash + 1 : e->file, e->line, e->path, e->text);
 }
 
-// Moves the files to their place, the scene last: with it the model is whole; or removes them.
+// Moves the files to the folder, the scene last, which completes the model; after a failure removes them.
 static bough_status finish_files(const char *from, const char *folder, bool good) {
     char old[BOUGH_PATH_MAX], path[BOUGH_PATH_MAX];
     bough_status status = bough_ok();
@@ -318,7 +318,7 @@ static bough_status finish_files(const char *from, const char *folder, bool good
     return status;
 }
 
-// Closes texts; whether all were written whole.
+// Closes texts; whether all were written completely.
 static bool close_all(FILE **file, int n) {
     bool good = true;
     for (int i = 0; i < n; i++) {

@@ -24,7 +24,7 @@ typedef enum bough_import_file {
 
 // Parts of the list, which are texts beside those of the files.
 typedef enum bough_import_note {
-    BOUGH_OTHER_CASE = BOUGH_N_IMPORT_FILE, // left out although the run becomes another than the model's
+    BOUGH_OTHER_CASE = BOUGH_N_IMPORT_FILE, // left out, which makes the load case another one
     BOUGH_TAKEN,
     BOUGH_APPROXIMATED,
     BOUGH_LEFT_OUT,
@@ -41,7 +41,7 @@ typedef struct bough_draft {
     char *text[BOUGH_N_IMPORT_TEXT];
     size_t size[BOUGH_N_IMPORT_TEXT];
     double macro_step; // [s]; air and control are sampled as often
-    long tolerance_at; // where the scene's text has the integrator's tolerance
+    long tolerance_at; // offset of the integrator's tolerance in the scene's text
     const bough_import_options *options;
     int halvings;              // of the macro step, after those for the speed of the rotor
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
@@ -58,7 +58,7 @@ bough_status bough_draft_import(void (*convert)(bough_draft *d, const char *path
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// … of the kinds that readers of models use; x->draft is the draft.
+// Lines of one kind, for the importers, whose struct *x has the draft.
 #define bough_taken(x, ...) bough_draft_note((x)->draft, BOUGH_TAKEN, __VA_ARGS__)
 #define bough_approximated(x, ...) bough_draft_note((x)->draft, BOUGH_APPROXIMATED, __VA_ARGS__)
 #define bough_left_out(x, ...) bough_draft_note((x)->draft, BOUGH_LEFT_OUT, __VA_ARGS__)
@@ -90,8 +90,8 @@ void bough_draft_library(bough_draft *d, const char *library, const char *input,
 enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
 
-// A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180
-// to 180 deg, where the values are one: the mean of those at the table's ends. `indicial`: A1, A2, b1, b2 of
+// A polar with rows (n × BOUGH_POLAR_COLUMNS) of increasing angle [deg], lift, drag and moment, written from
+// -180 to 180 deg, both with the mean of the table's first and last values. `indicial`: A1, A2, b1, b2 of
 // the polar's dynamic stall (4), NULL: the scene's default.
 void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n, const double *indicial);
 

@@ -47,7 +47,7 @@ static const bough_node *find(const bough_node *from, const char *names, size_t 
     return NULL;
 }
 
-// Goes down the path as far as there is something; *rest is what is left of it, "" at its end.
+// Follows the path as far as its keys exist; *rest is the remaining part, "" at its end.
 static const bough_node *descend(const bough_node *from, const char *path, const char **rest) {
     while (from && *path) {
         size_t n = strcspn(path, ".");
@@ -172,11 +172,11 @@ int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_cu
     return kept;
 }
 
-int bough_curve_shares(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
-                       double **share) {
+int bough_curve_fractions(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                          double **fraction) {
     double *all, *x;
     int n = bough_curve_places(d, curve, n_curve, least, &all), kept = 1;
-    x = *share = bough_arena_doubles(d->arena, (size_t)n + 2);
+    x = *fraction = bough_arena_doubles(d->arena, (size_t)n + 2);
     for (int i = 0; i < n; i++)
         if (all[i] >= least && all[i] < 1) x[kept++] = all[i];
     if (x[kept - 1] < 1 - least / 2) kept++;

@@ -97,7 +97,7 @@ static void open_modules(bough_openfast *o) {
     }
 }
 
-// A blade or tower bends if one of its motions is wanted.
+// Whether one of the motions is enabled, so that the blade or tower bends.
 static bool any(const bough_deck *deck, const char *const *name) {
     for (; *name; name++) {
         if (bough_deck_flag_or(deck, *name, false)) return true;

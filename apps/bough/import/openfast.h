@@ -23,7 +23,7 @@ typedef struct bough_deck {
     const char *path;
     const char **line; // (n)
     int n;
-    int first, last; // names are looked for in these lines, without the last
+    int first, last; // lines in which names are searched, without the last
     bough_arena *arena;
     bough_status *status;
 } bough_deck;
@@ -37,14 +37,14 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, int n_heading,
 // In what follows `names` is a name or several spellings of it, "WakeMod|Wake_Mod"; capitals do not
 // matter.
 
-// The line [from 0] that has the name behind its value or its values; -1: none.
+// The line [from 0] with the name after its value or its values; -1: none.
 int bough_deck_line(const bough_deck *deck, const char *names);
 
-// The deck from the line on that contains the words, for names that it has several times; the whole deck
-// where there is no such line.
+// The deck from the first line on that contains the words, for names that occur several times; the whole deck
+// without such a line.
 bough_deck bough_deck_part(const bough_deck *deck, const char *words);
 
-// The spellings of what the k-th blade has: "TipMass(2)|TipMass2".
+// The spellings of a name of the k-th blade: "TipMass(2)|TipMass2".
 const char *bough_deck_kth(const bough_deck *deck, const char *stem, int k);
 
 // The value of that name.
@@ -58,27 +58,27 @@ int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback)
 double bough_deck_switch_or(const bough_deck *deck, const char *names, double fallback); // True is 1
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
 
-// The path of a file that is named relative to this one, whether it is there or not; refused unless
-// it can be read; and the first word of a line as such. Where only capitals differ from what is there,
-// the path is as there.
+// The path of a file that the deck names relative to itself: path whether it exists or not, file refused
+// unless it can be read; _at by the first word of a line. Where only capitals differ from an existing file,
+// its spelling is taken.
 const char *bough_deck_path(const bough_deck *deck, const char *names);
 const char *bough_deck_path_at(const bough_deck *deck, int line);
 const char *bough_deck_file(const bough_deck *deck, const char *names);
 const char *bough_deck_file_at(const bough_deck *deck, int line);
 
-// Whether there is such a line, and it is empty or a comment (!, #, %).
+// Whether the line exists and is empty or a comment (!, #, %).
 bool bough_deck_is_comment(const bough_deck *deck, int line);
 
 // A table of `n` rows below the line that names all columns, units below it skipped: (n ×
-// n_column), NULL after a failure. A column "?Name" need not be there: its entries are then NaN.
+// n_column), NULL after a failure. A column "?Name" may be missing: its entries are then NaN.
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n);
 
 // Reads the first `count` numbers of one line, the first from *line on that is not empty or a comment;
-// *line moves behind it. `what` names the row in messages.
+// *line moves past it. `what` names the row in messages.
 void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to);
 
-// Reads `count` numbers that stand from *line on, which moves behind the last one's; empty lines
-// and comments are skipped. `what` names them in messages.
+// Reads `count` numbers from *line on, which moves past the line of the last; empty lines and comments are
+// skipped. `what` names them in messages.
 void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count, double *to);
 
 // The first line that has the words; -1: none.
@@ -108,7 +108,7 @@ typedef struct bough_openfast {
     bool rigid_blade, rigid_tower;
     bough_generator generator;
     const char *library;          // of the controller
-    const char *lacks_control;    // why a generator that should have a torque is driven; NULL: it is not
+    const char *unknown_torque;   // which torque is not known, so that the speed is prescribed; NULL: none
     double hub_radius;            // [m]
     double blade_length;          // [m]
     double blade_mass;            // [kg]
@@ -116,10 +116,10 @@ typedef struct bough_openfast {
     double tower_base, tower_top; // above ground [m]
 } bough_openfast;
 
-// A whole file on the list: which, from where.
+// Opens the file of a module and notes its path.
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names);
 
-// Fails at the line of a number that no turbine has; a deck of NULL has none.
+// Fails at the line of a number beyond its limits; NULL: there is no deck to check.
 void bough_openfast_check(const bough_deck *deck);
 
 // Values of a deck that a scene cannot represent, and the note on them.
@@ -147,7 +147,7 @@ void bough_openfast_wind(bough_openfast *o);
 // The highest speed of the rotor in the decks [rad/s].
 double bough_openfast_rotor_speed(const bough_openfast *o);
 
-// Finds out what acts on the generator.
+// Determines what acts on the generator.
 void bough_openfast_generator(bough_openfast *o);
 
 // The parts `bodies` and `turbine` of the scene; `control`.

@@ -1,4 +1,4 @@
-// AeroDyn 15: airfoils, blade elements, what the theory counts.
+// AeroDyn 15: airfoils, blade elements, options of the theory, tower.
 #include "apps/bough/import/openfast.h"
 
 #include <math.h>
@@ -57,8 +57,8 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     }
 }
 
-// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the
-// scene gives to its polar. NULL: not opened, the draft's status says why.
+// Opens the airfoil file that the first line from *line on names which is no comment; *line moves past it.
+// `name`: of its polar in the scene. NULL: not opened, the draft's status says why.
 static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
@@ -93,8 +93,8 @@ static void put_element(FILE *file, const double *row, double span, const char *
             row[CHORD], name);
 }
 
-// From the root to the tip: what stands beyond the tip is cut, and what ends before it goes on as it
-// is there. A station within a millimetre of either is at it.
+// Writes the elements from root to tip: a table that reaches beyond the tip is cut, one that ends before it
+// is extended with its last row. A station within a millimetre of an end is at it.
 static void put_span(bough_openfast *o, const double *row, int n, char (*name)[NAME]) {
     FILE *file = o->draft->file[BOUGH_IMPORT_AERO];
     const double close = 1e-3, length = o->blade_length; // [m]
@@ -108,9 +108,9 @@ static void put_span(bough_openfast *o, const double *row, int n, char (*name)[N
             put_element(file, row, at, name[(int)row[AIRFOIL] - 1]);
             continue;
         }
-        double cut[N_COLUMN], share = at > before ? fmin((length - before) / (at - before), 1) : 1;
+        double cut[N_COLUMN], fraction = at > before ? fmin((length - before) / (at - before), 1) : 1;
         for (int c = 0; c < N_COLUMN; c++)
-            cut[c] = i > 0 ? row[c - N_COLUMN] + share * (row[c] - row[c - N_COLUMN]) : row[c];
+            cut[c] = i > 0 ? row[c - N_COLUMN] + fraction * (row[c] - row[c - N_COLUMN]) : row[c];
         put_element(file, cut, length, name[(int)row[AIRFOIL] - 1]);
     }
     if (last < length - close) {
@@ -229,7 +229,7 @@ static void put_stall(bough_openfast *o) {
     if (!bough_deck_flag_or(a, "UseBlCm", true)) bough_put(o, "  pitching_moment: false\n");
 }
 
-// The rows above the ground; from the first below it on the ground's.
+// The rows above the ground, and the last below it, moved to the ground.
 static const double *above_ground(bough_openfast *o, const double *row, int *n) {
     double *kept = bough_arena_doubles(o->draft->arena, 3 * ((size_t)*n + 1));
     int m = 0;

@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-static const double close_enough = 1e-4; // of shares
+static const double close_enough = 1e-4; // of fractions of the length
 
 enum { MOST = 1000, MATRIX = BOUGH_IMPORT_MATRIX, STATION = 1 + 2 * MATRIX };
 
-// What bends, for the first frequencies.
+// Bending stiffness and mass along the span, for the first frequencies.
 typedef struct beam {
     int n;
     double *span, *flap, *edge, *mass; // (n) [m, N m2, N m2, kg/m]
@@ -21,11 +21,11 @@ static double distance(line_point a, line_point b) {
     return sqrt(x * x + y * y + z * z);
 }
 
-// The reference line at a share of its arc length [0 to 1].
-static line_point at_share(const line_point *p, int n, double share) {
+// The reference line at a fraction of its arc length [0 to 1].
+static line_point at_fraction(const line_point *p, int n, double fraction) {
     double length = 0;
     for (int i = 1; i < n; i++) length += distance(p[i - 1], p[i]);
-    double left = share * length;
+    double left = fraction * length;
     int i = 1;
     for (; i < n - 1 && left > distance(p[i - 1], p[i]); i++) left -= distance(p[i - 1], p[i]);
     line_point a = p[i - 1], b = p[i];
@@ -56,9 +56,9 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
 
 // Writes the section `s` at a fraction of the line, and adds it to the beam and to the blade's mass.
 static void add_station(bough_openfast *o, const bough_deck *deck, const line_point *p, int n_point,
-                        double share, const double *s, int line, beam *b) {
+                        double fraction, const double *s, int line, beam *b) {
     const double *k = s + 1, *m = s + 1 + MATRIX;
-    line_point at = at_share(p, n_point, share);
+    line_point at = at_fraction(p, n_point, fraction);
     int i = b->n++;
     if (!bough_section_possible(k, m)) {
         bough_deck_fail(deck, line,
@@ -79,10 +79,10 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
     if (bough_is_ok(o->draft->status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
-    double first = 0, last = 0, s[STATION], strange = 0;
+    double first = 0, last = 0, s[STATION], deviation = 0;
     bough_section_matrix_head(o->draft->file[BOUGH_IMPORT_BLADE]);
     for (int i = 0; i < n && bough_is_ok(o->draft->status); i++) {
-        bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
+        bough_deck_numbers(deck, &line, "a station's fraction of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
         bool good = i == 0 ? s[0] >= -close_enough : s[0] > last;
@@ -96,7 +96,7 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
         if (fabs(s[0] - 1) <= close_enough) s[0] = 1;
         if (i == 0 && s[0] > 0) add_station(o, deck, p, n_point, 0, s, start, b);
         if (bough_is_ok(o->draft->status)) add_station(o, deck, p, n_point, s[0], s, start, b);
-        strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
+        deviation = fmax(deviation, bough_section_deviation(s + 1 + MATRIX));
         if (i == n - 1 && s[0] < 1) add_station(o, deck, p, n_point, 1, s, start, b);
     }
     if (bough_is_ok(o->draft->status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
@@ -104,10 +104,10 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
                            first, last);
     }
     bough_taken(o, "%d stations with full stiffness and mass; the blade weighs %.7g kg", n, o->blade_mass);
-    bough_section_note(o->draft, strange);
+    bough_section_note(o->draft, deviation);
 }
 
-// Times that give the first flapwise and edgewise mode their ratios.
+// Damping times by which the first flapwise and edgewise mode have the deck's ratios.
 static const double *modal_damping(bough_openfast *o, const bough_deck *deck, const beam *b) {
     int n = bough_deck_whole(deck, "n_modes", 1, MOST), line = bough_deck_line(deck, "n_modes") + 1;
     double ratio[2] = {0}, *mu = bough_arena_doubles(o->draft->arena, 6);

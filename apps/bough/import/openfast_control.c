@@ -1,4 +1,4 @@
-// ServoDyn: what acts on the generator, and what steers the pitch.
+// ServoDyn: the generator's torque, and the control of the pitch.
 #include "apps/bough/import/openfast.h"
 
 #include "aero/control/discon.h"
@@ -57,7 +57,7 @@ static int mode_of(const bough_openfast *o, const char *name) {
 
 // -- speeds ---------------------------------------------------------------------------------------
 
-// Of an induction generator without torque [rad/s].
+// The synchronous speed of an induction generator [rad/s].
 static double synchronous_speed(const bough_openfast *o) {
     if (bough_deck_whole_or(o->servo, "GenModel", SIMPLE) == SIMPLE) {
         return bough_deck_number(o->servo, "SIG_SySp") * BOUGH_RPM;
@@ -81,9 +81,9 @@ double bough_openfast_rotor_speed(const bough_openfast *o) {
 
 // -- what acts on the generator -------------------------------------------------------------------
 
-// The generator has a torque of which too little is known.
-static void lack(bough_openfast *o, const char *why) {
-    o->lacks_control = why;
+// The generator has a torque that is not known: its speed is prescribed instead.
+static void keep_speed(bough_openfast *o, const char *why) {
+    o->unknown_torque = why;
     o->generator = BOUGH_GENERATOR_DRIVEN;
     bough_other_case(o,
                      "%s: the generator keeps its initial speed, %g rpm of the rotor, and the pitch is "
@@ -116,8 +116,9 @@ static void find_library(bough_openfast *o) {
     const char *path = bough_deck_path(o->servo, "DLL_FileName");
     if (!bough_is_ok(o->draft->status) || take_library(o, path, why)) return;
     if (mode_of(o, "VSContrl") == LIBRARY) {
-        lack(o, bough_arena_print(o->draft->arena,
-                                  "a controller, to be given to the import by --controller FILE (%s)", why));
+        keep_speed(o, bough_arena_print(o->draft->arena,
+                                        "a controller, to be given to the import by --controller FILE (%s)",
+                                        why));
     } else {
         bough_other_case(o, "PCMode 5: the pitch is held: %s", why);
     }
@@ -134,7 +135,7 @@ static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
     if (model != SIMPLE && model != THEVENIN)
-        lack(o, bough_arena_print(o->draft->arena, "the user's generator of GenModel %d", model));
+        keep_speed(o, bough_arena_print(o->draft->arena, "the user's generator of GenModel %d", model));
 }
 
 void bough_openfast_generator(bough_openfast *o) {
@@ -156,17 +157,18 @@ void bough_openfast_generator(bough_openfast *o) {
     if (torque == NONE) {
         find_induction(o);
     } else {
-        lack(o,
-             bough_arena_print(o->draft->arena, "the torque of VSContrl %d, the user's own routine", torque));
+        keep_speed(o, bough_arena_print(o->draft->arena, "the torque of VSContrl %d, the user's own routine",
+                                        torque));
     }
 }
 
 // -- torque over speed ----------------------------------------------------------------------------
 
-// No torque up to a speed, or growing with its square, then a line to the most, which stays.
+// The torque over the speed: zero or proportional to its square, then a line to the maximum, which holds
+// beyond.
 typedef struct torque_line {
     double gain;       // of the square [N m s2/rad2]
-    double full_speed; // where the torque is the most [rad/s]
+    double full_speed; // at which the torque reaches its maximum [rad/s]
     double most;       // [N m]
     double slip;       // full speed over that where the line begins, less 1
 } torque_line;
@@ -189,7 +191,7 @@ static torque_line read_variable_speed(const bough_openfast *o) {
     return l;
 }
 
-// To the pull-out torque, at which it stays.
+// A line to the pull-out torque, which holds beyond.
 static torque_line read_simple(const bough_openfast *o) {
     const bough_deck *s = o->servo;
     double ratio = bough_deck_number_or(s, "SIG_PORt", 1);
@@ -202,7 +204,7 @@ static torque_line read_simple(const bough_openfast *o) {
     return l;
 }
 
-// Of the circuit as seen from the rotor's winding: the slope at no slip, and the pull-out torque.
+// Thévenin's circuit as seen from the rotor's winding: slope at zero slip, and pull-out torque.
 static torque_line read_thevenin(const bough_openfast *o) {
     const bough_deck *s = o->servo;
     double r = bough_deck_number(s, "TEC_SRes"), rotor = bough_deck_number(s, "TEC_RRes");
@@ -238,8 +240,8 @@ static torque_line read_line(bough_openfast *o) {
     return read_thevenin(o);
 }
 
-// Least slip at which the sampled torque does not hunt: the rate at which the line alone would slow
-// the generator, times the sample; twice this is stable on a rigid shaft.
+// The least slip at which the sampled torque is stable: the rate at which the line alone would slow the
+// generator, times the sample's period, is `most_gain`; on a rigid shaft twice this is still stable.
 static double least_slip(const bough_openfast *o, const torque_line *l) {
     const double most_gain = 0.75;
     double ratio = bough_deck_number(o->elasto, "GBRatio");
@@ -288,7 +290,7 @@ static void put_law(bough_openfast *o) {
     if (mode_of(o, "VSContrl") == NONE) bough_put(o, "    motoring: true\n");
 }
 
-// When the generator goes on line, and off for good.
+// Events that connect the generator, and disconnect it for good.
 static void put_switches(bough_openfast *o) {
     const bough_deck *s = o->servo;
     bool law = o->generator == BOUGH_GENERATOR_LAW;

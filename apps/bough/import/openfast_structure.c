@@ -1,5 +1,5 @@
-// ElastoDyn's blade and tower: mass and two bending stiffnesses along the span, and mode shapes,
-// from which the frequencies come that turn damping ratios into times.
+// ElastoDyn's blade and tower: mass and two bending stiffnesses along the span, and mode shapes, whose
+// frequencies convert damping ratios to times.
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/section.h"
 #include "core/base/schedule.h"
@@ -15,7 +15,7 @@ static const double laminate = 1e7, steel = 210e9 / 8500;
 
 typedef struct slender {
     int n;
-    const double *row;        // (n × width): share of the span, then as below
+    const double *row;        // (n × width): fraction of the span, then as below
     int width, mass, bending; // columns
     double mass_factor, bending_factor;
     double length;       // [m]
@@ -34,7 +34,7 @@ static double at(const slender *b, int column, double x) {
 static double frequency(const slender *b) {
     double stiffness = 0, mass = 0, end = 0;
     for (int i = 0; i <= GRID; i++) {
-        double x = (double)i / GRID, share = (i == 0 || i == GRID ? 0.5 : 1) * b->length / GRID;
+        double x = (double)i / GRID, weight = (i == 0 || i == GRID ? 0.5 : 1) * b->length / GRID;
         double value = 0, curvature = 0;
         for (int k = 0; k < COEFFICIENTS; k++) {
             int power = FIRST + k;
@@ -42,8 +42,8 @@ static double frequency(const slender *b) {
             curvature += b->shape[k] * power * (power - 1) * pow(x, power - 2);
         }
         curvature /= b->length * b->length;
-        stiffness += share * b->bending_factor * at(b, b->bending, x) * curvature * curvature;
-        mass += share * b->mass_factor * at(b, b->mass, x) * value * value;
+        stiffness += weight * b->bending_factor * at(b, b->bending, x) * curvature * curvature;
+        mass += weight * b->mass_factor * at(b, b->mass, x) * value * value;
         end = value;
     }
     return sqrt(stiffness / (mass + b->end_mass * end * end));
@@ -97,7 +97,7 @@ void bough_openfast_weigh(bough_openfast *o, const double span[2], const double 
     o->blade_inertia += own * radius * radius;
 }
 
-// The table from 0 to 1: where it ends before, it goes on as it ends; one station is the whole.
+// Extends the table to 0 and 1 with its first and last rows; a single station holds for the whole span.
 static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const char *count) {
     const double close = 1e-4;
     if (!b->row || b->n < 1) return;

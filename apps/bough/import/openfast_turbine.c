@@ -22,15 +22,15 @@ static bool yaws(const bough_openfast *o) {
 
 static double neutral_yaw(const bough_openfast *o) { return bough_deck_number_or(o->servo, "YawNeut", 0); }
 
-// Whether the bearing's spring is turned during the run.
+// Whether a drive rotates the bearing's spring during the run.
 static bool has_yaw_drive(const bough_openfast *o) {
     double end = bough_deck_number(o->main, "TMax");
     return yaws(o) && bough_deck_number_or(o->servo, "TYawManS", end) < end &&
            bough_deck_number_or(o->servo, "NacYawF", neutral_yaw(o)) != neutral_yaw(o);
 }
 
-// The speed of a joint that turns by `way` [deg] from `start` [s] on, at a constant rate [deg/s], which comes
-// and goes within a macro step; `key` is where the deck has them.
+// Writes the speed of a joint that rotates by `way` [deg] from `start` [s] on at a constant rate [deg/s],
+// with ramps of a macro step; `key`: the manoeuvre in the deck.
 static void put_manoeuvre(bough_openfast *o, const char *key, double way, double start, double rate) {
     double speed = copysign(rate, way), lasts = way / speed;
     double half = fmin(fmin(o->draft->macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
@@ -46,7 +46,7 @@ static void put_manoeuvre(bough_openfast *o, const char *key, double way, double
     bough_taken(o, "%.*s: turns by %g deg from %g s on", (int)strcspn(key, "|"), key, fabs(way), start);
 }
 
-// A body that turns what the spring of the yaw bearing is fixed to.
+// A driven body between tower and nacelle, to which the spring of the yaw bearing is fixed.
 static void put_yaw_drive(bough_openfast *o) {
     bough_put(o, "  - name: yaw # drive, against which the nacelle turns\n    fidelity: rigid\n"
                  "    joint: {kind: revolute, axis: z, parent: tower, ");
@@ -89,9 +89,9 @@ static void put_nacelle(bough_openfast *o) {
     const bough_deck *e = o->elasto;
     double mass = bough_deck_number(e, "NacMass"), about_yaw = bough_deck_number(e, "NacYIner");
     double bearing = bough_deck_number_or(e, "YawBrMass", 0), sum = mass + bearing;
-    double share = sum > 0 ? mass / sum : 0;
-    double x = share * bough_deck_number(e, "NacCMxn"), y = share * bough_deck_number(e, "NacCMyn");
-    double z = share * bough_deck_number(e, "NacCMzn"), polar = about_yaw - sum * (x * x + y * y);
+    double fraction = sum > 0 ? mass / sum : 0;
+    double x = fraction * bough_deck_number(e, "NacCMxn"), y = fraction * bough_deck_number(e, "NacCMyn");
+    double z = fraction * bough_deck_number(e, "NacCMzn"), polar = about_yaw - sum * (x * x + y * y);
     if (polar < 0) {
         bough_approximated(o, "NacYIner is less than the mass times its squared distance: zero inertia about "
                               "the nacelle's centre of mass");
@@ -131,9 +131,9 @@ static void put_main_joint(bough_openfast *o) {
               bough_deck_number(e, "Twr2Shft"), -bough_deck_number(e, "ShftTilt"),
               bough_deck_number(e, "OverHang"));
     if (angle != 0) bough_put(o, "      angle: %.10g deg\n", angle);
-    if (o->lacks_control) {
+    if (o->unknown_torque) {
         bough_put(o, "      # This scene lacks %s:\n      # the speed of the start is kept.\n",
-                  o->lacks_control);
+                  o->unknown_torque);
     }
     bough_put(o,
               o->generator == BOUGH_GENERATOR_DRIVEN ? "      motion: {speed: %.10g rpm}\n"
@@ -182,7 +182,7 @@ static double undersling(const bough_openfast *o) {
 
 static bool has_generator(const bough_openfast *o) { return bough_openfast_generator_inertia(o) > 0; }
 
-// What turns in the nacelle, or against the generator.
+// The joint of the shaft, with the nacelle or with the generator.
 static void put_shaft_joint(bough_openfast *o, bool twists) {
     if (twists) {
         bough_put(o,

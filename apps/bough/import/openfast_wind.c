@@ -1,4 +1,4 @@
-// InflowWind: the wind of the scene, or what stands for a file that is not there.
+// InflowWind: the wind of the scene; a steady wind where its file is missing.
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/wind.h"
 
@@ -50,8 +50,8 @@ static void put_steady(bough_openfast *o, double speed) {
     }
 }
 
-// A steady wind in place of what cannot be had; the scene and the list say so.
-static void put_stand_in(bough_openfast *o, const char *why) {
+// A steady wind in place of one that cannot be read, with a comment in the scene and a note.
+static void put_substitute(bough_openfast *o, const char *why) {
     const double usual = 8; // [m/s]
     double speed = positive(o->inflow, "HWindSpeed", positive(o->inflow, "URef", usual));
     bough_put(o, "  # This scene lacks its wind, to be given to the import by --wind FILE:\n  # %s\n", why);
@@ -89,11 +89,11 @@ static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
     return bough_wind_hawc_read(o->draft->arena, &d, box);
 }
 
-// What cannot be read is stood in for, unless the user gave it.
+// A file that cannot be read is replaced by a steady wind, unless the user gave it.
 static void take_status(bough_openfast *o, bough_status status) {
     if (bough_is_ok(&status) || !bough_is_ok(o->draft->status)) return;
     if (status.code == BOUGH_INVALID && !o->draft->options->wind) {
-        put_stand_in(o, status.message);
+        put_substitute(o, status.message);
     } else {
         *o->draft->status = status;
     }
@@ -123,8 +123,8 @@ static void put_type(bough_openfast *o, int type) {
         return;
     }
     if (type == NATIVE_BLADED || type == 6) {
-        put_stand_in(o,
-                     type == 6 ? "WindType 6, the user's own routine" : "WindType 7, Bladed's native files");
+        put_substitute(o, type == 6 ? "WindType 6, the user's own routine"
+                                    : "WindType 7, Bladed's native files");
         return;
     }
     int line = file_line(o->inflow, type);
@@ -158,7 +158,7 @@ void bough_openfast_wind(bough_openfast *o) {
         bough_put(o, "  wind: {kind: uniform, speed: 0 m/s");
         bough_approximated(o, "without InflowWind the air is still");
     } else {
-        put_stand_in(o, "CompInflow 2, the wind of another program");
+        put_substitute(o, "CompInflow 2, the wind of another program");
     }
     if (to != 0) bough_put(o, ", direction: %.10g deg", -to);
     if (up != 0) bough_put(o, ", upflow: %.10g deg", up);

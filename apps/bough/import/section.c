@@ -41,12 +41,12 @@ void bough_section_matrix_put(FILE *file, const bough_section_place *at, const d
     fputs("]\n", file);
 }
 
-void bough_section_note(bough_draft *d, double strangeness) {
-    if (!(strangeness > 1e-3)) return;
+void bough_section_note(bough_draft *d, double deviation) {
+    if (!(deviation > 1e-3)) return;
     bough_draft_note(
         d, BOUGH_APPROXIMATED,
         "mass matrices: only mass, centre and inertias; other entries, up to %.2g of these, are left out",
-        strangeness);
+        deviation);
 }
 
 bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX], const double m[BOUGH_IMPORT_MATRIX]) {
@@ -59,7 +59,7 @@ bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX], const double m[
     return mass > 0 && bough_cholesky_factor(6, stiffness) && bough_cholesky_factor(3, inertia);
 }
 
-double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]) {
+double bough_section_deviation(const double m[BOUGH_IMPORT_MATRIX]) {
     double mass = m[0], x = -m[2 * 6 + 4], y = m[2 * 6 + 3], polar = m[35];
     double off[] = {(m[7] - mass) / mass,
                     (m[14] - mass) / mass,
@@ -118,8 +118,8 @@ void bough_section_head(FILE *file, double length, const double *time) {
 
 void bough_section_put(FILE *file, const bough_section *s) {
     const double stiffness[] = {s->shear, s->shear, s->axial, s->bend_x, s->bend_y, s->torsion};
-    double share = s->mass / s->axial; // of one material: inertia over stiffness
-    const double mass[] = {s->mass, 0, 0, s->bend_x * share, s->bend_y * share, 0};
+    double ratio = s->mass / s->axial; // of one material: inertia over stiffness
+    const double mass[] = {s->mass, 0, 0, s->bend_x * ratio, s->bend_y * ratio, 0};
     fprintf(file, "    - [%.10g, %.10g, ", s->span, s->twist);
     bough_import_list(file, stiffness, 6);
     fputs(", ", file);

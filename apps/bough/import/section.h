@@ -11,12 +11,12 @@
 
 enum { BOUGH_IMPORT_MATRIX = 36 };
 
-// Whether a scene takes them: stiffness and inertia about the centre of mass positive definite.
+// Whether a scene accepts both matrices: stiffness and inertia about the centre of mass positive definite.
 bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX], const double m[BOUGH_IMPORT_MATRIX]);
 
-// How far m is from the matrix of a mass with centre and inertias: the largest wrong entry, relative to the
-// entries beside it.
-double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]);
+// The deviation of m from the matrix of a mass with centre and inertias: the largest, relative to the
+// neighbouring entries [-].
+double bough_section_deviation(const double m[BOUGH_IMPORT_MATRIX]);
 
 // The first bending frequency [rad/s] of a clamped beam without twist and shear, given at n
 // stations from the root: span [m], bending stiffness [N m2] and mass [kg/m], linear between.
@@ -24,8 +24,8 @@ double bough_section_frequency(int n, const double *span, const double *stiffnes
 
 // The head of a table of sections with matrices, and a row of it: span [m], twist [deg], place of the axis
 // [m], 6 × 6 stiffness and mass, row by row, in the scene's order (shear x, shear y, axial, bend x, bend y,
-// twist). Written are the six diagonal entries of a stiffness that has no others, else the 21 of its upper
-// triangle, and mass, centre and inertias.
+// twist). The row has the six diagonal entries of a diagonal stiffness, else the 21 of its upper triangle,
+// then mass, centre and inertias.
 typedef struct bough_section_place {
     double x, y, z, twist;
 } bough_section_place;
@@ -33,8 +33,8 @@ void bough_section_matrix_head(FILE *file);
 void bough_section_matrix_put(FILE *file, const bough_section_place *at, const double k[BOUGH_IMPORT_MATRIX],
                               const double m[BOUGH_IMPORT_MATRIX]);
 
-// The list's line on the strangest of the mass matrices.
-void bough_section_note(bough_draft *d, double strangeness);
+// Notes the largest deviation of the mass matrices.
+void bough_section_note(bough_draft *d, double deviation);
 
 // A section of one material without offsets.
 typedef struct bough_section {
@@ -64,12 +64,12 @@ typedef struct bough_ply {
     double thickness;                // [m]
 } bough_ply;
 
-// Between two nodes; its plies lie from the line that joins them to the left of the way from the first
-// to the second, or on both sides of it.
+// A wall between two nodes. Its plies lie to the left of the line from the first node to the second, or half
+// of them on each side.
 typedef struct bough_wall {
     int from, to;
     int n_ply;
-    const bough_ply *ply; // (n_ply), from the line on
+    const bough_ply *ply; // (n_ply), the first at the line
     int centred;          // 1: half of them on each side
 } bough_wall;
 

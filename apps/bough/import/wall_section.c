@@ -5,9 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-// A wall's line in the middle of its shear stiffness, and what it carries.
+// A wall as a line in the middle of its shear stiffness.
 typedef struct line {
-    double length, normal[2]; // [m]; to the left of its way
+    double length, normal[2]; // [m]; to the left of its direction
     double axial, shear;      // per length: A11 − A12²/A22, A66 [N/m]
     double thickness, middle; // [m]; depth of its middle from the nodes' line [m]
 } line;
@@ -31,7 +31,7 @@ static plane plane_of(const bough_ply *p) {
                    (a + b - 2 * c - 2 * g) * both + g * (cc * cc + ss * ss)};
 }
 
-// The share of the hoop strain in the axial force, A12/A22.
+// A12/A22: without hoop force the hoop strain is −A12/A22 times the axial strain.
 static double hoop_ratio(const bough_wall *w) {
     double a12 = 0, a22 = 0;
     for (int k = 0; k < w->n_ply; k++) {
@@ -72,7 +72,7 @@ static void add_moments(double f, const double middle[2], const double way[2], d
     to[5] -= f * (x * y + way[0] * way[1] / 12);
 }
 
-// Normals at the nodes (n × 2): the mean of their walls', or nothing where these form a corner.
+// Normals at the nodes (n × 2): the mean of their walls', or zero where these form a corner.
 static void find_normals(int n_node, int n_wall, const bough_wall *wall, const line *l, double *normal) {
     memset(normal, 0, 2 * (size_t)n_node * sizeof *normal);
     for (int w = 0; w < n_wall; w++) {
@@ -88,7 +88,7 @@ static void find_normals(int n_node, int n_wall, const bough_wall *wall, const l
     }
 }
 
-// How much shorter a wall is at a depth where it curves.
+// The length of a curved wall at a depth.
 static double length_at(const bough_wall *w, const line *l, const double *normal, double depth) {
     const double *a = normal + 2 * w->from, *b = normal + 2 * w->to;
     bool corner = hypot(a[0], a[1]) == 0 || hypot(b[0], b[1]) == 0;
@@ -97,7 +97,7 @@ static double length_at(const bough_wall *w, const line *l, const double *normal
     return fmax(l->length + depth * along, 0.1 * l->length);
 }
 
-// Ply by ply where they lie: stiffness and mass, each ∫ (1, y, −x, y², x², −x y).
+// Adds the plies of a wall, each at its depth, to stiffness and mass, each ∫ (1, y, −x, y², x², −x y).
 static void add_wall(const bough_wall *w, const line *l, const double *x, const double *y,
                      const double *normal, double stiffness[6], double mass[6]) {
     double depth = w->centred ? -l->thickness / 2 : 0, ratio = hoop_ratio(w);
@@ -132,7 +132,7 @@ static void take(bough_arena *arena, network *n) {
     for (int k = 0; k < 3; k++) bough_arena_each(arena, m, &n->load[k], &n->right[k]);
 }
 
-// Nodes move to the middles of their walls, in the mean of these by length.
+// Moves the nodes to the middles of their walls, the means of which are weighted by length.
 static void place_nodes(network *n, const double *x, const double *y, const bough_wall *wall, const line *l) {
     double *weight = n->right[0];
     for (int w = 0; w < n->n_wall; w++) {
@@ -165,18 +165,18 @@ static void assemble(network *n, const bough_wall *wall, const line *l) {
         // the wall's own torsion, which is all that an open section has
         n->matrix[twist * m + twist] += l[w].shear * l[w].thickness * l[w].thickness * length / 3;
         const int place[] = {place_of(n, from), place_of(n, to), twist};
-        const double share[] = {-1, 1, h};
+        const double weight[] = {-1, 1, h};
         for (int a = 0; a < 3; a++) {
             for (int b = 0; b < 3; b++) {
                 if (place[a] < m && place[b] < m) {
-                    n->matrix[place[a] * m + place[b]] += g * share[a] * share[b];
+                    n->matrix[place[a] * m + place[b]] += g * weight[a] * weight[b];
                 }
             }
         }
     }
 }
 
-// Axial forces that grow along the span as the moments of a unit shear force need: E A (a + b x + c y).
+// Axial forces that increase along the span as the moments of a unit shear force do: E A (a + b x + c y).
 static bool load_nodes(network *n) {
     int m = n->n_node;
     double plane_of_strain[9] = {0};
@@ -210,7 +210,7 @@ static bool solve(network *n, double compliance[9]) {
     return true;
 }
 
-// Puts the inverse of the compliance where shear and twist stand.
+// Puts the inverse of the compliance into the rows and columns of shear and twist.
 static bool put_shear(double compliance[9], double stiffness[36]) {
     static const int place[] = {0, 1, 5};
     if (!bough_cholesky_factor(3, compliance)) return false;
@@ -244,15 +244,18 @@ bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x,
     double *normal = bough_arena_doubles(arena, 2 * (size_t)n_node);
     take(arena, &n);
     double axial[6] = {0}, inertia[6] = {0}, compliance[9];
+    // laminates
     for (int w = 0; w < n_wall; w++) {
         l[w] = line_of(&wall[w], x, y);
         bool sound = l[w].length > 0 && l[w].thickness > 0 && l[w].axial > 0 && l[w].shear > 0;
         if (!sound) return bough_fail(BOUGH_INVALID, "a wall without length, thickness or stiffness");
     }
+    // tension, bending, mass
     find_normals(n_node, n_wall, wall, l, normal);
     for (int w = 0; w < n_wall; w++) add_wall(&wall[w], &l[w], x, y, normal, axial, inertia);
     memset(stiffness, 0, 36 * sizeof(double));
     memset(mass, 0, 36 * sizeof(double));
+    // shear flow
     place_nodes(&n, x, y, wall, l);
     assemble(&n, wall, l);
     if (!solve(&n, compliance) || !put_shear(compliance, stiffness)) {

@@ -16,7 +16,7 @@ static bough_status bad(const char *path, const char *what) {
     return bough_fail(BOUGH_INVALID, "%.220s: %s", path, what);
 }
 
-// Opens, or says why not.
+// Opens the file, or refuses it with the reason.
 static bough_status open_data(const char *path, FILE **file) {
     char why[BOUGH_INPUT_REASON];
     *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
@@ -51,14 +51,14 @@ typedef struct summary {
     double hub, offset, mean, intensity[3]; // [m], [m], [m/s], [%]
 } summary;
 
-// Whether the line has the words, in whatever capitals.
+// Whether the line has the words, in any capitals.
 static bool has(const char *line, const char *words) {
     size_t n = strlen(words);
     while (*line && strncasecmp(line, words, n) != 0) line++;
     return *line != '\0';
 }
 
-// The number behind '=', or at the line's beginning.
+// The number after '=', or at the line's beginning.
 static double number_in(const char *line) {
     const char *equals = strchr(line, '=');
     return strtod(equals ? equals + 1 : line, NULL);
@@ -129,7 +129,7 @@ static bool read_old_head(FILE *file, int first, bladed_head *h) {
     return true;
 }
 
-// What depends on the turbulence model comes before and behind the common part.
+// The parts that depend on the turbulence model come before and after the common one.
 static bool read_new_head(FILE *file, bladed_head *h) {
     int model;
     word own[7], common[12], rest[12];
@@ -251,7 +251,7 @@ static bough_status read_component(const char *path, size_t n, double *value) {
     return status;
 }
 
-// What the field is multiplied by.
+// The scale of a component.
 static double factor_of(const bough_hawc_def *d, int component, const double *value) {
     if (d->scaling != 2) return d->scaling == 1 ? d->factor[component] : 1;
     double sum = 0, square = 0;
@@ -265,7 +265,7 @@ static double factor_of(const bough_hawc_def *d, int component, const double *va
     return deviation > 0 ? d->sigma[component] / deviation : 0;
 }
 
-// Scales the field; of u the mean over time of each point goes where there is a scale, and the profile
+// Scales the field. Of u the mean over time of each point is removed where there is a scale, and the profile
 // is added.
 static void shape(const bough_hawc_def *d, int component, double bottom, double *value) {
     double factor = factor_of(d, component, value);

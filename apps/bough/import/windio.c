@@ -1,4 +1,4 @@
-// A turbine of the WindIO ontology: what is where in its two layouts, and the order of the scene.
+// A turbine of the WindIO ontology: the paths of its parts in both layouts, and the order of the scene.
 #include "apps/bough/import/windio.h"
 
 #include "apps/bough/import/import.h"

@@ -21,10 +21,10 @@
 // The tree of a file; NULL after a failure.
 const bough_node *bough_entry_read(bough_draft *d, const char *path);
 
-// What stands at the path below `from` (NULL allowed); NULL: nothing.
+// The value at the path below `from` (NULL allowed); NULL: none.
 const bough_node *bough_entry(const bough_node *from, const char *path);
 
-// The same; a failure where there is nothing.
+// The same; a failure where there is none.
 const bough_node *bough_entry_need(bough_draft *d, const bough_node *from, const char *path);
 
 // A number, a text; with a fallback where there is none.
@@ -32,7 +32,7 @@ double bough_entry_number(bough_draft *d, const bough_node *from, const char *pa
 double bough_entry_number_or(bough_draft *d, const bough_node *from, const char *path, double fallback);
 const char *bough_entry_text(bough_draft *d, const bough_node *from, const char *path);
 
-// The numbers of a list, *n of them, or just as many as wanted where *n > 0.
+// The numbers of a list; *n: how many it must have, 0: any number, which is then returned.
 const double *bough_entry_numbers(bough_draft *d, const bough_node *from, const char *path, int *n);
 
 // The item of a list of mappings that has this name; NULL: none.
@@ -53,14 +53,14 @@ bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double 
 // Linear between the points, constant outside; 0 of a curve that could not be read.
 double bough_curve_at(const bough_curve *c, double x);
 
-// The places of all curves' points in rising order, those closer than `least` to the one before left out:
-// their number.
+// The coordinates of all curves' points in increasing order, without those closer than `least` to the one
+// before; returns their number.
 int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
                        double **place);
 
-// The same of curves over a share, from 0 to 1.
-int bough_curve_shares(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
-                       double **share);
+// The same of curves over a fraction of the span, with 0 and 1.
+int bough_curve_fractions(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                          double **fraction);
 
 // Keeps a failure at a node, unless there was one.
 void bough_entry_fail(bough_draft *d, const bough_node *where, const char *format, ...)
@@ -70,17 +70,17 @@ void bough_entry_fail(bough_draft *d, const bough_node *where, const char *forma
 
 // An airfoil's place on the blade.
 typedef struct bough_windio_place {
-    const bough_node *airfoil; // its entry in the list of airfoils
-    int number;                // in the scene's polars
-    double share, thickness;   // of the blade's reference line; relative to the chord
+    const bough_node *airfoil;  // its entry in the list of airfoils
+    int number;                 // in the scene's polars
+    double fraction, thickness; // of the blade's reference line; relative to the chord
 } bough_windio_place;
 
 typedef struct bough_windio_shape {
     bough_windio_place *place; // (n)
     int n;
-    bool by_thickness; // elements find their airfoils by thickness, not by share
+    bool by_thickness; // elements find their airfoils by thickness, not by position
     bough_curve chord, twist, thickness;
-    bough_curve pitch_axis;         // version 1: share of the chord before the line; else none
+    bough_curve pitch_axis;         // version 1: fraction of the chord before the line; else none
     bough_curve offset_x, offset_y; // version 2: of the chord line [m]
 } bough_windio_shape;
 
@@ -94,13 +94,13 @@ typedef struct bough_windio {
     double forward;          // 1: the rotor is upwind of the tower, -1: downwind
     int n_blade;
     bough_windio_shape outline;      // of the blade
-    bough_curve axis[3];             // the blade's reference line over its share [m]
+    bough_curve axis[3];             // the blade's reference line over the fraction of its length [m]
     double blade_length, blade_mass; // along z [m]; [kg]
     bool shear_stiff;                // the blade's matrices have no shear
     double inertia;                  // of the rotor about its axis [kg m2]
     double hub_radius, radius;       // [m]
     double tower_base, tower_top;    // above ground [m]
-    bough_curve height, diameter;    // of the tower, over the share of its length [m]
+    bough_curve height, diameter;    // of the tower, over the fraction of its length [m]
     double hub_height;               // above the tower's top [m]
     double density;                  // of the air [kg/m3]
     double rated_power;              // of the generator [W]
@@ -108,9 +108,9 @@ typedef struct bough_windio {
     double speed, wind;              // at the start: rotor [rad/s], air [m/s]
 } bough_windio;
 
-// A number of the control block, by a name of version 1 or of version 2, of which both stand in either. Its
-// unit is that of the file's version: `second_unit` is what one of version 2 is in version 1. The fallback is
-// in version 1's unit.
+// A number of the control block, by its name in version 1 or in version 2: files of either have both. Its
+// unit is that of the file's version: `second_unit` is one unit of version 2 in those of version 1. The
+// fallback is in version 1's unit.
 double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
                             double fallback);
 
@@ -125,8 +125,8 @@ void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const
 // The blade's shape, into `outline`.
 void bough_windio_shape_read(bough_windio *w);
 
-// The place of the airfoil at a share of the blade or before it: *share of the next one.
-int bough_windio_neighbours(const bough_windio_shape *shape, double at, double *share);
+// The index of the airfoil at a fraction of the blade or before it; *weight: that of the next one [-].
+int bough_windio_neighbours(const bough_windio_shape *shape, double at, double *weight);
 
 // The reference line's distance from the leading edge, along the chord [m].
 double bough_windio_line(const bough_windio_shape *shape, double at);
@@ -148,14 +148,11 @@ void bough_windio_law(bough_windio *w);
 
 // -- stiffness and inertia from layers and webs on the outlines (windio_layup.c) ------------------
 
-// The blade's stiffness and inertia from what it is made of: layers and webs on the outlines of its
-// sections.
-
 // 6 × 6 matrices about the reference line in section axes, of which the upper triangle is given.
 typedef struct bough_windio_matrices {
     const bough_node *node;
     int n;
-    const double *grid; // (n) shares of the blade
+    const double *grid; // (n) fractions of the blade
     double *entry;      // (21 × n), the values of one entry side by side
 } bough_windio_matrices;
 

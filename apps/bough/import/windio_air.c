@@ -101,10 +101,10 @@ static double centre_of(bough_windio *w, const bough_windio_place *p) {
 static void put_element(bough_windio *w, const bough_windio_shape *a, double at) {
     FILE *file = w->draft->file[BOUGH_IMPORT_AERO];
     char name[NAME], other[NAME];
-    double share, chord = bough_curve_at(&a->chord, at);
-    int i = bough_windio_neighbours(a, at, &share);
-    const bough_windio_place *p = &a->place[i], *q = share > 0 ? p + 1 : p;
-    double centre = (1 - share) * centre_of(w, p) + share * centre_of(w, q);
+    double weight, chord = bough_curve_at(&a->chord, at);
+    int i = bough_windio_neighbours(a, at, &weight);
+    const bough_windio_place *p = &a->place[i], *q = weight > 0 ? p + 1 : p;
+    double centre = (1 - weight) * centre_of(w, p) + weight * centre_of(w, q);
     double back = centre * chord - bough_windio_line(a, at), up = bough_curve_at(&a->offset_x, at);
     double twist = bough_curve_at(&a->twist, at) * w->degree, turn = twist * BOUGH_DEGREE;
     airfoil_name(p->airfoil, p->number, name);
@@ -113,7 +113,7 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
             bough_curve_at(&w->axis[2], at),
             bough_curve_at(&w->axis[0], at) + back * sin(turn) + up * cos(turn),
             bough_curve_at(&w->axis[1], at) + back * cos(turn) - up * sin(turn), twist, chord, name, other,
-            share);
+            weight);
     if (!(chord > 0)) bough_entry_fail(w->draft, a->chord.node, "chord: expected a positive value");
 }
 

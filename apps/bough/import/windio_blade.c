@@ -1,4 +1,4 @@
-// The blade's structure: 6 × 6 stiffness and inertia over the share of its reference line, as rows
+// The blade's structure: 6 × 6 stiffness and inertia over the fraction of its reference line, as rows
 // of 21 (version 1) or as one list for each entry (version 2). Section axes: x flapwise, y
 // edgewise, turned by the twist; both matrices about the reference line: those of the scene.
 #include "apps/bough/import/section.h"
@@ -14,16 +14,16 @@ static const double usual_damping = 2e-3;
 
 typedef bough_windio_matrices matrices;
 
-// One entry over the share of the blade.
+// One entry over the fraction of the blade.
 static bough_curve curve_of(const matrices *m, int i, int j) {
     return (bough_curve){m->node, m->n, m->grid, m->entry + (size_t)bough_symmetric6_index(i, j) * m->n};
 }
 
-static void matrix_at(const matrices *m, double share, double to[MATRIX]) {
+static void matrix_at(const matrices *m, double fraction, double to[MATRIX]) {
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {
             bough_curve entry = curve_of(m, i, j);
-            to[6 * i + j] = to[6 * j + i] = bough_curve_at(&entry, share);
+            to[6 * i + j] = to[6 * j + i] = bough_curve_at(&entry, fraction);
         }
     }
 }
@@ -125,25 +125,26 @@ static bool stiffen_shear(double k[MATRIX]) {
     return any;
 }
 
-static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia, double share,
-                        double twist, double *strange) {
+static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia, double fraction,
+                        double twist, double *deviation) {
     double k[MATRIX], m[MATRIX];
-    matrix_at(stiffness, share, k);
-    matrix_at(inertia, share, m);
+    matrix_at(stiffness, fraction, k);
+    matrix_at(inertia, fraction, m);
     w->shear_stiff = stiffen_shear(k) || w->shear_stiff;
     if (!bough_section_possible(k, m)) {
         bough_entry_fail(w->draft, stiffness->node,
                          "at %.4g of the span: expected stiffness and inertia of a real section, positive "
                          "definite",
-                         share);
+                         fraction);
     }
-    const bough_section_place at = {bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share),
-                                    bough_curve_at(&w->axis[2], share), twist};
+    const bough_section_place at = {bough_curve_at(&w->axis[0], fraction),
+                                    bough_curve_at(&w->axis[1], fraction),
+                                    bough_curve_at(&w->axis[2], fraction), twist};
     bough_section_matrix_put(w->draft->file[BOUGH_IMPORT_BLADE], &at, k, m);
-    *strange = fmax(*strange, bough_section_strangeness(m));
+    *deviation = fmax(*deviation, bough_section_deviation(m));
 }
 
-// Of the length of the reference line.
+// The mass between two points of the reference line [kg].
 static double mass_between(const bough_windio *w, const matrices *inertia, double a, double b) {
     double square = 0;
     bough_curve mass = curve_of(inertia, 0, 0);
@@ -185,14 +186,14 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     bough_curve twist = bough_entry_curve(w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
     bough_windio_check_angles(w, &twist, "twist");
     const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
-    double *share, strange = 0;
-    int n = bough_curve_shares(w->draft, all, 6, 1e-6, &share); // all at which something bends
+    double *fraction, deviation = 0;
+    int n = bough_curve_fractions(w->draft, all, 6, 1e-6, &fraction); // points of any of the curves
     for (int i = 0; i < n && bough_is_ok(w->draft->status); i++) {
-        double turn = bough_curve_at(&twist, share[i]) * w->degree;
-        put_station(w, stiffness, inertia, share[i], turn, &strange);
+        double turn = bough_curve_at(&twist, fraction[i]) * w->degree;
+        put_station(w, stiffness, inertia, fraction[i], turn, &deviation);
         if (i == 0) continue;
-        double mass = mass_between(w, inertia, share[i - 1], share[i]);
-        double radius = w->hub_radius + bough_curve_at(&w->axis[2], (share[i - 1] + share[i]) / 2);
+        double mass = mass_between(w, inertia, fraction[i - 1], fraction[i]);
+        double radius = w->hub_radius + bough_curve_at(&w->axis[2], (fraction[i - 1] + fraction[i]) / 2);
         w->blade_mass += mass;
         w->inertia += w->n_blade * mass * radius * radius;
     }
@@ -202,7 +203,7 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
         bough_approximated(w, "blade: shear stiffness of zero (K11, K22) is read as no shear: the axial "
                               "stiffness");
     }
-    bough_section_note(w->draft, strange);
+    bough_section_note(w->draft, deviation);
 }
 
 // The matrices that the file gives; NULL: none.
@@ -216,7 +217,7 @@ static const bough_node *find_matrices(const bough_windio *w) {
     return NULL;
 }
 
-// Whether both are those of a section at each share at which the file gives one of them.
+// Whether both are positive definite wherever the file gives one of them.
 static bool are_possible(const matrices *stiffness, const matrices *inertia) {
     const matrices *given[] = {stiffness, inertia};
     double k[MATRIX], m[MATRIX];

@@ -1,4 +1,5 @@
-
+// Stiffness and inertia of the blade's sections from its layers and webs: outlines, positions on their arc,
+// walls.
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
 #include "core/base/base.h"
@@ -11,7 +12,7 @@
 // -- outlines of sections -------------------------------------------------------------------------
 
 // The outline of a blade's section: interpolated between the two nearest airfoils, whose sides have points at
-// equal shares of their arcs, and scaled.
+// equal distances along their arcs, and scaled.
 
 enum { SIDE = 80, ROUND = 2 * SIDE, POINTS = ROUND + 1 };
 
@@ -21,7 +22,7 @@ enum { SIDE = 80, ROUND = 2 * SIDE, POINTS = ROUND + 1 };
 typedef struct outline {
     double x[POINTS], y[POINTS]; // [m]
     double arc[POINTS];          // from 0 to 1
-    double length;               // of the way round [m]
+    double length;               // perimeter [m]
 } outline;
 
 // -- airfoils -------------------------------------------------------------------------------------
@@ -55,7 +56,7 @@ static void reverse(double *value, int n) {
     }
 }
 
-// A blunt trailing edge begins and ends in its middle.
+// An airfoil with a blunt trailing edge begins and ends in the middle of it.
 static void close_edge(points *p) {
     double x = (p->x[0] + p->x[p->n - 1]) / 2, y = (p->y[0] + p->y[p->n - 1]) / 2;
     if (hypot(p->x[0] - x, p->y[0] - y) > 1e-9) {
@@ -90,7 +91,7 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
     return p;
 }
 
-// Draws points `from` to `to` at equal shares of their arc: SIDE + 1 of them.
+// SIDE + 1 points at equal distances along the arc from point `from` to point `to`.
 static void draw_side(const points *p, int from, int to, double *x, double *y) {
     double length = 0, done = 0;
     for (int i = from; i < to; i++) length += hypot(p->x[i + 1] - p->x[i], p->y[i + 1] - p->y[i]);
@@ -133,13 +134,13 @@ static const double *read_airfoils(bough_windio *w) {
 
 // -- the section ----------------------------------------------------------------------------------
 
-// The outline at a share of the blade.
-static void outline_at(const bough_windio *w, const double *airfoils, double share, outline *to) {
-    double mix, chord = bough_curve_at(&w->outline.chord, share);
-    int i = bough_windio_neighbours(&w->outline, share, &mix);
+// The outline at a fraction of the blade.
+static void outline_at(const bough_windio *w, const double *airfoils, double fraction, outline *to) {
+    double mix, chord = bough_curve_at(&w->outline.chord, fraction);
+    int i = bough_windio_neighbours(&w->outline, fraction, &mix);
     const double *one = airfoils + (size_t)i * 2 * POINTS, *two = mix > 0 ? one + 2 * POINTS : one;
-    double line = bough_windio_line(&w->outline, share);
-    double up = bough_curve_at(&w->outline.offset_x, share);
+    double line = bough_windio_line(&w->outline, fraction);
+    double up = bough_curve_at(&w->outline.offset_x, fraction);
     for (int k = 0; k < POINTS; k++) {
         to->y[k] = chord * ((1 - mix) * one[k] + mix * two[k]) - line;
         to->x[k] = chord * ((1 - mix) * one[POINTS + k] + mix * two[POINTS + k]) + up;
@@ -192,8 +193,8 @@ typedef struct parts {
     int n_layer;
     layer layer[MOST_LAYERS];
     const double *airfoils;
-    outline outline;     // at the present share
-    double share, twist; // twist [rad]
+    outline outline;        // at the present fraction
+    double fraction, twist; // twist [rad]
 } parts;
 
 // -- where on the arc -----------------------------------------------------------------------------
@@ -211,7 +212,7 @@ static const bough_node *find_part(const parts *p, const char *name) {
 
 static double curve_at(parts *p, const bough_node *from, const char *key) {
     bough_curve c = bough_entry_curve(p->w->draft, from, key);
-    return bough_curve_at(&c, p->share);
+    return bough_curve_at(&c, p->fraction);
 }
 
 static handle handle_of(const bough_node *node) {
@@ -229,8 +230,8 @@ static double anchor_of(parts *p, const bough_node *node, int depth) {
     return (arc_of(p, part, START, depth + 1) + arc_of(p, part, END, depth + 1)) / 2;
 }
 
-// A place that is said in itself: by values, an anchor, or the name of what it begins or ends at.
-static double said(parts *p, const bough_node *node, handle end, int depth) {
+// An end that the file gives directly: by values, by an anchor, or by the name of an adjacent part.
+static double given_end(parts *p, const bough_node *node, handle end, int depth) {
     if (!node || node->kind != BOUGH_MAPPING) return NAN;
     const bough_node *fixed = bough_entry(node, "fixed");
     if (fixed && fixed->kind == BOUGH_SCALAR) {
@@ -243,7 +244,7 @@ static double said(parts *p, const bough_node *node, handle end, int depth) {
     return anchor_of(p, node, depth);
 }
 
-// The turn from the chord to the blade's y axis, by which offsets of planes are counted [rad].
+// The angle from the chord to the direction in which offsets of planes are measured [rad].
 static double turn_of(parts *p, const bough_node *part) {
     double degree = p->w->degree * BOUGH_DEGREE;
     const bough_node *rotation = bough_entry(part, "rotation");
@@ -269,7 +270,7 @@ static int side_of(const bough_node *part, handle end) {
     return side->text[0] == 'p' || side->text[0] == 'P';
 }
 
-// From another anchor by a way along the arc, of metres or of the whole; NAN: none.
+// From another anchor by a length along the arc, in metres or relative to the perimeter; NAN: none.
 static double offset_from(parts *p, const bough_node *part, handle end, int depth) {
     static const char *const keys[] = {"offset_arc", "offset_nd_arc"};
     for (int k = 0; k < 2; k++) {
@@ -285,15 +286,15 @@ static double offset_from(parts *p, const bough_node *part, handle end, int dept
 static double by_width(parts *p, const bough_node *part, handle end, int depth) {
     if (!bough_entry(part, "width")) return NAN;
     double half = curve_at(p, part, "width") / p->outline.length / 2, sign = end == START ? -1 : 1;
-    double middle = said(p, bough_entry(part, "midpoint_nd_arc"), end, depth);
+    double middle = given_end(p, bough_entry(part, "midpoint_nd_arc"), end, depth);
     if (isnan(middle)) middle = crossing(p, part, side_of(part, end));
     if (!isnan(middle)) return middle + sign * half;
     handle other = end == START ? END : START;
-    return said(p, bough_entry(part, arc_name[other]), other, depth) + sign * 2 * half;
+    return given_end(p, bough_entry(part, arc_name[other]), other, depth) + sign * 2 * half;
 }
 
-// Whether the part's entry, a width or a plane, says that it defines this end: values beside it are then
-// those of another program's last run.
+// Whether the part's width or plane is declared to define this end: values of the end are then results of
+// another program.
 static bool defines(const bough_node *part, const char *key, handle end) {
     const bough_node *what = bough_entry(bough_entry(part, key), "defines");
     bool list = what && what->kind == BOUGH_SEQUENCE;
@@ -312,7 +313,7 @@ static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
     double arc = NAN;
     if (defines(part, "plane_intersection", end)) arc = crossing(p, part, side_of(part, end));
     if (isnan(arc) && defines(part, "width", end)) arc = by_width(p, part, end, depth);
-    if (isnan(arc)) arc = said(p, bough_entry(part, arc_name[end]), end, depth);
+    if (isnan(arc)) arc = given_end(p, bough_entry(part, arc_name[end]), end, depth);
     if (isnan(arc)) arc = offset_from(p, part, end, depth);
     if (isnan(arc)) arc = by_width(p, part, end, depth);
     if (isnan(arc)) arc = crossing(p, part, side_of(part, end));
@@ -322,7 +323,7 @@ static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
 
 // -- layers ---------------------------------------------------------------------------------------
 
-// Its stiffness must be that of a material: ν² below E1/E2.
+// The moduli must be those of a material: ν² below E1/E2.
 static bough_ply read_material(parts *p, const bough_node *material) {
     bough_draft *d = p->w->draft;
     bough_ply ply = {.density = bough_windio_property(p->w, material, "rho", 0)};
@@ -338,7 +339,7 @@ static bough_ply read_material(parts *p, const bough_node *material) {
     return ply;
 }
 
-// Plies of a thickness that the material has, in place of the layer's thickness.
+// The thickness of a layer by its number of plies, whose thickness is the material's.
 static bough_curve read_plies(parts *p, const bough_node *node, const bough_node *material) {
     bough_draft *d = p->w->draft;
     bough_curve c = bough_entry_curve(d, node, "n_plies");
@@ -392,11 +393,11 @@ static void read_parts(parts *p) {
     p->airfoils = bough_is_ok(d->status) ? read_airfoils(p->w) : NULL;
 }
 
-// Nothing outside of the curve's own stretch.
-static double thickness_at(const layer *l, double share) {
+// Zero outside of the curve's range.
+static double thickness_at(const layer *l, double fraction) {
     const bough_curve *c = &l->thickness;
-    if (c->n == 0 || share < c->x[0] - 1e-9 || share > c->x[c->n - 1] + 1e-9) return 0;
-    return bough_curve_at(c, share);
+    if (c->n == 0 || fraction < c->x[0] - 1e-9 || fraction > c->x[c->n - 1] + 1e-9) return 0;
+    return bough_curve_at(c, fraction);
 }
 
 // -- walls ----------------------------------------------------------------------------------------
@@ -413,19 +414,19 @@ static bough_ply ply_of(const parts *p, const layer *l, double thickness) {
     bough_ply ply = l->ply;
     double degree = p->w->degree * BOUGH_DEGREE;
     ply.thickness = thickness;
-    ply.angle = l->angle.n > 0 ? bough_curve_at(&l->angle, p->share) * degree : 0;
+    ply.angle = l->angle.n > 0 ? bough_curve_at(&l->angle, p->fraction) * degree : 0;
     return ply;
 }
 
-// What stands where no layer does, so that the outline is whole: a film without weight.
+// Where there is no layer, a massless film closes the outline.
 static const bough_ply film = {{1e7, 1e7}, 4e6, 0.25, 0, 0, 1e-4};
 
-// Node k is the outline's point k; walls go against its way, so that their plies lie inside.
+// Node k is the outline's point k; walls run against the outline, so that their plies lie inside.
 static void put_skin(parts *p, section *s) {
     double from[MOST_LAYERS], to[MOST_LAYERS], thick[MOST_LAYERS];
     const outline *o = &p->outline;
     for (int i = 0; i < p->n_layer; i++) {
-        thick[i] = p->layer[i].web < 0 ? thickness_at(&p->layer[i], p->share) : 0;
+        thick[i] = p->layer[i].web < 0 ? thickness_at(&p->layer[i], p->fraction) : 0;
         if (!(thick[i] > 0)) continue;
         from[i] = arc_of(p, p->layer[i].node, START, 0);
         to[i] = arc_of(p, p->layer[i].node, END, 0);
@@ -462,7 +463,7 @@ static void put_web(parts *p, section *s, int web) {
     const bough_ply *ply = s->ply + s->n_ply;
     int n_ply = 0;
     for (int i = 0; i < p->n_layer; i++) {
-        double thick = p->layer[i].web == web ? thickness_at(&p->layer[i], p->share) : 0;
+        double thick = p->layer[i].web == web ? thickness_at(&p->layer[i], p->fraction) : 0;
         if (thick > 0) s->ply[s->n_ply + n_ply++] = ply_of(p, &p->layer[i], thick);
     }
     int from = node_at(&p->outline, arc_of(p, p->webs->value[web], START, 0));
@@ -486,8 +487,8 @@ static void put_web(parts *p, section *s, int web) {
 static void solve_station(parts *p, section *s, double stiffness[36], double mass[36]) {
     bough_draft *d = p->w->draft;
     bough_arena *scratch = bough_arena_child(d->arena);
-    outline_at(p->w, p->airfoils, p->share, &p->outline);
-    p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_DEGREE;
+    outline_at(p->w, p->airfoils, p->fraction, &p->outline);
+    p->twist = bough_curve_at(&p->w->outline.twist, p->fraction) * p->w->degree * BOUGH_DEGREE;
     s->n_wall = s->n_ply = 0;
     put_skin(p, s);
     for (int i = 0; p->webs && i < p->webs->n; i++) put_web(p, s, i);
@@ -495,14 +496,13 @@ static void solve_station(parts *p, section *s, double stiffness[36], double mas
                                                                       s->n_wall, s->wall, stiffness, mass)
                                                  : bough_ok();
     if (!bough_is_ok(&status)) {
-        bough_entry_fail(d, p->layers, "layers at %.4g of the span: %s", p->share, status.message);
+        bough_entry_fail(d, p->layers, "layers at %.4g of the span: %s", p->fraction, status.message);
     }
     bough_arena_destroy(scratch);
 }
 
-// Where chord and layers have points, but not closer than a hundredth of the blade, nor farther than
-// a thirtieth.
-static int choose_shares(parts *p, double **share) {
+// The points of chord and layers, at least a hundredth and at most a thirtieth of the blade apart.
+static int choose_fractions(parts *p, double **fraction) {
     enum { MOST = 30 };
     double even[MOST];
     const bough_curve *curve[MOST_LAYERS + 2], between = {.n = MOST, .x = even};
@@ -510,7 +510,7 @@ static int choose_shares(parts *p, double **share) {
     for (int l = 0; l < p->n_layer; l++) curve[l] = &p->layer[l].thickness;
     curve[p->n_layer] = &p->w->outline.chord;
     curve[p->n_layer + 1] = &between;
-    return bough_curve_shares(p->w->draft, curve, p->n_layer + 2, 0.01, share);
+    return bough_curve_fractions(p->w->draft, curve, p->n_layer + 2, 0.01, fraction);
 }
 
 static void put_matrix(const double from[36], int station, const bough_windio_matrices *to) {
@@ -528,12 +528,12 @@ void bough_windio_layup(bough_windio *w, bough_windio_matrices *stiffness, bough
     p->w = w;
     read_parts(p);
     if (!bough_is_ok(d->status)) return;
-    double *share, k[36], m[36];
-    int n = choose_shares(p, &share);
-    *stiffness = *mass = (bough_windio_matrices){.node = w->blade, .n = n, .grid = share};
+    double *fraction, k[36], m[36];
+    int n = choose_fractions(p, &fraction);
+    *stiffness = *mass = (bough_windio_matrices){.node = w->blade, .n = n, .grid = fraction};
     bough_arena_each(d->arena, 21 * (size_t)n, &stiffness->entry, &mass->entry);
     for (int i = 0; i < n && bough_is_ok(d->status); i++) {
-        p->share = share[i];
+        p->fraction = fraction[i];
         solve_station(p, s, k, m);
         put_matrix(k, i, stiffness);
         put_matrix(m, i, mass);

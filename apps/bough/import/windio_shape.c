@@ -1,4 +1,4 @@
-// The blade's shape: chord, twist, where its axis lies, and which airfoils stand where.
+// The blade's shape: chord, twist, position of the axis, airfoils.
 #include "apps/bough/import/windio.h"
 
 #include <math.h>
@@ -11,14 +11,14 @@ static double thickness_of(bough_windio *w, const bough_node *airfoil) {
     return bough_entry_number_or(w->draft, airfoil, "relative_thickness|rthick", NAN);
 }
 
-static void read_place(bough_windio *w, const bough_node *where, const char *name, double share,
+static void read_place(bough_windio *w, const bough_node *where, const char *name, double fraction,
                        bough_windio_place *p) {
     const bough_node *list = bough_entry_need(w->draft, w->root, "airfoils");
     const bough_node *airfoil = list ? bough_entry_named(list, name) : NULL;
     if (list && !airfoil) {
         bough_entry_fail(w->draft, where, "no airfoil is named '%.60s'", name);
     }
-    *p = (bough_windio_place){.airfoil = airfoil, .share = share};
+    *p = (bough_windio_place){.airfoil = airfoil, .fraction = fraction};
     if (airfoil) p->thickness = thickness_of(w, airfoil);
 }
 
@@ -48,8 +48,8 @@ static void read_items(bough_windio *w, const bough_node *list, bough_windio_sha
     bool mixed = false;
     for (a->n = 0; a->n < list->n && bough_is_ok(w->draft->status); a->n++) {
         const bough_node *item = list->value[a->n], *tags = bough_entry(item, "configuration");
-        double share = bough_entry_number_or(w->draft, item, "spanwise_position", NAN);
-        read_place(w, item, bough_entry_text(w->draft, item, "name"), share, &a->place[a->n]);
+        double fraction = bough_entry_number_or(w->draft, item, "spanwise_position", NAN);
+        read_place(w, item, bough_entry_text(w->draft, item, "name"), fraction, &a->place[a->n]);
         mixed = mixed || (tags && tags->kind == BOUGH_SEQUENCE && tags->n > 1);
     }
     if (mixed) {
@@ -57,7 +57,7 @@ static void read_items(bough_windio *w, const bough_node *list, bough_windio_sha
     }
 }
 
-// Thickness dominates where it is given and falls from place to place.
+// Airfoils are found by thickness where it is given and decreases along the blade.
 static void choose_measure(bough_windio *w, const bough_node *where, bough_windio_shape *a) {
     a->by_thickness = a->thickness.n > 0;
     for (int i = 0; i < a->n; i++) {
@@ -65,24 +65,24 @@ static void choose_measure(bough_windio *w, const bough_node *where, bough_windi
         a->by_thickness = a->by_thickness && a->place[i].thickness <= before;
     }
     for (int i = 0; i < a->n && !a->by_thickness; i++) {
-        if (a->place[i].share >= (i > 0 ? a->place[i - 1].share : 0)) continue;
+        if (a->place[i].fraction >= (i > 0 ? a->place[i - 1].fraction : 0)) continue;
         bough_entry_fail(w->draft, where, "airfoil %d: expected increasing fractions of the span", i + 1);
     }
 }
 
 // -- shape ----------------------------------------------------------------------------------------
 
-int bough_windio_neighbours(const bough_windio_shape *a, double at, double *share) {
+int bough_windio_neighbours(const bough_windio_shape *a, double at, double *weight) {
     double t = a->by_thickness ? bough_curve_at(&a->thickness, at) : at;
     int i = 0;
-    *share = 0;
+    *weight = 0;
     for (; i + 1 < a->n; i++) {
         const bough_windio_place *p = &a->place[i];
-        double from = a->by_thickness ? -p->thickness : p->share;
-        double to = a->by_thickness ? -p[1].thickness : p[1].share;
+        double from = a->by_thickness ? -p->thickness : p->fraction;
+        double to = a->by_thickness ? -p[1].thickness : p[1].fraction;
         double value = a->by_thickness ? -t : t;
         if (value >= to) continue;
-        if (value > from && p->airfoil != p[1].airfoil) *share = (value - from) / (to - from);
+        if (value > from && p->airfoil != p[1].airfoil) *weight = (value - from) / (to - from);
         break;
     }
     return i;

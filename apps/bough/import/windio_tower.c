@@ -65,12 +65,12 @@ static void read_tube(bough_windio *w, tube *t) {
 // -- writing --------------------------------------------------------------------------------------
 
 // Sums the layers' rings, from outside inwards.
-static bough_section section_at(bough_windio *w, const tube *t, double share) {
-    double outer = bough_curve_at(&w->diameter, share);
-    bough_section s = {.span = bough_curve_at(&w->height, share) - w->tower_base};
+static bough_section section_at(bough_windio *w, const tube *t, double fraction) {
+    double outer = bough_curve_at(&w->diameter, fraction);
+    bough_section s = {.span = bough_curve_at(&w->height, fraction) - w->tower_base};
     for (int i = 0; i < t->n; i++) {
         const layer *l = &t->layer[i];
-        double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
+        double thickness = bough_curve_at(&l->thickness, fraction), inner = outer - 2 * thickness;
         if (!(thickness >= 0) || !(inner >= 0)) {
             bough_entry_fail(w->draft, l->thickness.node,
                              "thickness: expected a value from 0 to the tower's radius, got %g m", thickness);

@@ -25,7 +25,8 @@ static void add_offset(double inertia[6], double mass, const double c[3]) {
     inertia[5] -= mass * c[1] * c[2];
 }
 
-// An inertia about the origin of the frame, if it can be one; else it is about the centre of mass.
+// Moves an inertia from the frame's origin to the centre of mass, unless it is too small to be about the
+// origin.
 static void move_to_centre(lump *l) {
     double moved[6];
     memcpy(moved, l->inertia, sizeof moved);
@@ -73,7 +74,7 @@ static void add_yaw(bough_windio *w, lump *l) {
     l->mass = sum;
 }
 
-// The mass that the user gives for a part without one; `option` gives it.
+// The user's mass of a part for which the file has none.
 static double given_mass(bough_windio *w, const bough_node *part, const char *name, double given) {
     if (!(given > 0)) {
         bough_entry_fail(w->draft, part,
@@ -83,7 +84,7 @@ static double given_mass(bough_windio *w, const bough_node *part, const char *na
     return given;
 }
 
-// A mass that the file has counts more than the user's.
+// The file's mass takes precedence over the user's.
 static void leave_given(bough_windio *w, const char *name, double given) {
     if (!(given > 0)) return;
     bough_left_out(w, "--%s-mass: the file has the mass of the %s", name, name);
@@ -101,7 +102,7 @@ static lump hub_lump(bough_windio *w) {
     return (lump){mass, {0}, {inertia, inertia, inertia}};
 }
 
-// What the rotor-nacelle assembly weighs beyond hub and blades.
+// The rotor-nacelle assembly without hub and blades.
 static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l) {
     const bough_node *part = bough_entry(w->parts, "RNA|rna");
     lump all;
