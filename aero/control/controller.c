@@ -7,13 +7,13 @@
 
 static double synchronous(const bough_controller_def *d) { return d->rated_speed / (1 + d->slip); }
 
-// Of the line through no torque at the synchronous speed and rated torque.
+// The slope of the line from zero torque at the synchronous speed to rated torque.
 static double slope(const bough_controller_def *d) {
     return d->rated_power / d->rated_speed / (d->rated_speed - synchronous(d));
 }
 
 // Where that line meets the parabola of best tip-speed ratio: gain ω² = slope (ω − ω₀), solved without
-// a difference of large numbers when the slip is next to nothing.
+// a difference of large numbers when the slip is small.
 static double transition(const bough_controller_def *d) {
     double first = synchronous(d);
     return 2 * first / (1 + sqrt(fmax(1 - 4 * d->optimal_gain * first / slope(d), 0)));

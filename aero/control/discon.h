@@ -24,7 +24,7 @@ typedef struct bough_discon_sensed {
     int n_blade;
     double pitch[BOUGH_MOST_BLADES];       // [rad]
     double root_moment[BOUGH_MOST_BLADES]; // out of plane [N m]
-    double in_plane[BOUGH_MOST_BLADES];    // the other one [N m]
+    double in_plane[BOUGH_MOST_BLADES];    // in plane [N m]
     bool individual;                       // each blade is to follow its own demand
     double yaw_error;                      // wind's direction less the nacelle's [rad]
     double heading;                        // of the nacelle, from ground x about z [rad]

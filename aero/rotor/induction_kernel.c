@@ -159,7 +159,7 @@ static void go_near(lanes *restrict x) {
     }
 }
 
-// Likewise where the bracket is still missing.
+// To the other end of the search where the bracket is still missing.
 static void go_far(lanes *restrict x) {
 #pragma omp simd
     for (int i = 0; i < x->n; i++) {

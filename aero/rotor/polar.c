@@ -51,7 +51,7 @@ static void find_range(const bough_polar_def *def, bough_polar *polar) {
 
 static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
 
-// Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
+// The angle nearest to zero, within 20°, at which the lift increases through zero; false: there is none.
 static bool find_zero_lift(const bough_polar *polar, double *zero) {
     const double step = 0.25 * BOUGH_DEGREE;
     bool found = false;

@@ -1,4 +1,4 @@
-// What the sections are loaded by, and how that follows their motion.
+// Loads of the sections, and their derivatives by the motion.
 #include "aero/rotor/rotor_model.h"
 
 // theory (84), Pitt and Peters: the wake leans, and induction is larger on the leeward half of the disk.
@@ -125,14 +125,15 @@ BOUGH_INLINE double loss_decline(double factor, sine_cosine phi) {
 // `normal`, `slope`: Cn and its slope by α.
 BOUGH_INLINE response in_balance(const bough_rotor *rotor, blade_rows r, int j, double normal, double slope) {
     double wind = fabs(r.inflow_x[j]), v = wind > 1 ? wind : 1, w = r.speed[j] > 1 ? r.speed[j] : 1;
-    double loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3, share = r.solidity[j] / (4 * loss * v), a = r.axial[j];
+    double loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3, factor = r.solidity[j] / (4 * loss * v),
+           a = r.axial[j];
     sine_cosine phi = lane_sine_cosine(r.phi[j]);
     double decline = rotor->induction.tip_loss ? loss_decline(rotor->station.tip_factor[j], phi) : 0;
     decline += rotor->induction.hub_loss ? loss_decline(rotor->station.hub_factor[j], phi) : 0;
     // ∂R/∂u of the balance: momentum, loss factor, blade
     double free = 1 - 2 * a + a * (1 - a) * v / (w * loss) * decline;
-    double sum = free + share * w * slope, scale = 1 / (sum > 0.3 ? sum : 0.3);
-    double across = -share * r.inflow_y[j] * (2 * normal - slope * phi.sine) * scale;
+    double sum = free + factor * w * slope, scale = 1 / (sum > 0.3 ? sum : 0.3);
+    double across = -factor * r.inflow_y[j] * (2 * normal - slope * phi.sine) * scale;
     return (response){lane_clamp((1 - a) * scale, 0, 1.2), lane_clamp(across, -1, 1),
                       lane_clamp(free * scale, 0, 1.2)};
 }

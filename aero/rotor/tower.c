@@ -88,7 +88,7 @@ bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, 
     return bough_v3(cx * along - cy * across, cy * along + cx * across, wind.z);
 }
 
-// Above the top, where a bent tower may reach, all is as at the top.
+// Above the top, where a bent tower may reach, diameter and drag are those of the top.
 bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position, bough_vec3 axis,
                             bough_vec3 inflow) {
     if (tower->n == 0) return bough_v3(0, 0, 0);

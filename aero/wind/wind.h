@@ -61,7 +61,7 @@ typedef struct bough_wind {
     const bough_wind_box *box; // likewise; or turbulence of the standard
     const bough_wind_iec *iec; // a condition without turbulence
     double up_x, up_z;         // cosine and sine of the upflow
-    double level;              // where the veer is none [m]
+    double level;              // height without veer [m]
 } bough_wind;
 
 bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind);

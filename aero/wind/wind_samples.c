@@ -4,14 +4,14 @@
 
 #include <math.h>
 
-// Of the hub, and of a point that feels both shears of a hub-height file.
+// The hub, and a point that has both shears of a hub-height file.
 enum { POINTS = 2 };
 
 typedef struct samples {
     const bough_wind *wind;
     double period;                        // from one sample to the next [s]
-    bough_vec3 point[POINTS];             // where the wind is looked at
-    bough_vec3 low[POINTS], high[POINTS]; // over all times looked at [m/s]
+    bough_vec3 point[POINTS];             // at which the wind is evaluated
+    bough_vec3 low[POINTS], high[POINTS]; // over all times [m/s]
     bough_wind_missed missed;
 } samples;
 

@@ -146,8 +146,8 @@ static void set_distances(maker *m) {
     }
 }
 
-// The lower triangle of the coherence of all points, in `order`. What is below rounding would make products
-// that are denormal, which processors multiply a hundred times as slowly.
+// The lower triangle of the coherence of all points, in `order`. Values below rounding would have denormal
+// products, which processors compute a hundred times as slowly.
 static void fill_coherence(maker *m, double f) {
     for (int k = 0; k < m->n_point; k++) {
         double coherence = bough_turbulence_coherence(m->def, m->distance[k], f);

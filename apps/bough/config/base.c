@@ -68,7 +68,7 @@ static bool has_names(const bough_node *list) {
 
 static bough_node *merge(merger *m, bough_node *base, bough_node *over);
 
-// What stands below a key of the base or below a name of its list.
+// Merges the values below a key of the base, or below a name of its list.
 static bough_node *merge_at(merger *m, const char *before, const char *key, const char *after,
                             bough_node *base, bough_node *over) {
     size_t length = strlen(m->path);
@@ -149,7 +149,7 @@ static bool same_file(const char *a, const char *b) {
     return about_a.st_dev == about_b.st_dev && about_a.st_ino == about_b.st_ino;
 }
 
-// The bases that lead here: one that is named again, or too many, would have no end.
+// Refuses a base that is in the chain already, and a chain that is too long.
 static bool may_follow(const merger *m, const bough_schema_base *bases, const char *path,
                        const bough_node *where) {
     int depth = 0;
@@ -173,7 +173,7 @@ static bough_schema_base *find_base(const merger *m, const bough_node *name, con
     return base;
 }
 
-// The tree of a file on its bases, which follow at *next.
+// The tree of a file merged with its bases, the list of which begins at *next.
 static bough_node *read_on_base(merger *m, const char *path, bool absolute, bough_schema_base **next,
                                 bough_schema_base *const *bases) {
     bough_node *root = bough_text_read(m->arena, path, m->errors);
@@ -262,7 +262,7 @@ static void write_value(const writer *w, const bough_node *node, int indent, boo
     fputc('\n', w->stream);
 }
 
-// The first one follows on a line that has begun.
+// `begun`: the first item continues a line.
 static void write_items(const writer *w, const bough_node *node, int indent, bool begun) {
     for (int i = 0; i < node->n; i++) {
         if (indent == 0 && node->key != NULL && strcmp(node->key[i]->text, base_key) == 0) continue;

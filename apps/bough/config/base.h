@@ -31,7 +31,7 @@ int bough_node_index(const bough_node *node, const char *name);
 // The name in the container that is nearest to a misspelt one.
 bough_suggestion bough_node_suggest(bough_arena *arena, const bough_node *node, const char *name);
 
-// Gives the node, and all below it, the place of another one.
+// Gives the node, and all below it, the position of another one.
 void bough_node_move(bough_node *node, const bough_node *at);
 
 // Whether the value is a plain null or ~, which removes a key.

@@ -9,7 +9,7 @@
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
-// But for values that do not increase: checks of what spans several keys are made beside them.
+// Without those of values that do not increase, which leave checks across keys possible.
 static int errors_so_far(const bough_schema_reader *r) {
     return r->errors->n + r->errors->dropped - r->out_of_order;
 }
@@ -173,7 +173,7 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
 
 // -- files ----------------------------------------------------------------------------------------
 
-// The record of a file that a schema has read, or without a schema of its name; NULL: none yet.
+// The record of a file as read by a schema, or, with NULL, of its name alone; NULL: none yet.
 static const bough_schema_file *find_file(const bough_schema_file *f, const char *path,
                                           const bough_schema *schema) {
     while (f != NULL && (f->schema != schema || strcmp(f->path, path) != 0)) f = f->next;
@@ -221,7 +221,8 @@ static void *load(bough_schema_reader *r, const bough_schema *schema, const char
     return item;
 }
 
-// The same for other scenes too. The file names no further ones, which each scene would have to list.
+// Reads a file for all scenes that share it. It names no further files, which each scene would have to
+// record.
 static void *load_shared(bough_schema_reader *r, const bough_schema *schema, const char *path) {
     bough_schema_shared *shared = r->shared;
     bough_arena *own = r->arena;
@@ -308,7 +309,8 @@ static relevance applies(const bough_schema *schema, const bough_key *key, void 
     return bough_word_is_among(bough_key_choice(by, choice), key->when, '|') ? APPLIES : APPLIES_NOT;
 }
 
-// Says where a key that is given would apply, unless another key of that name applies here.
+// Refuses a key that does not apply here, with the choices under which it does, unless another key of that
+// name applies.
 static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
                        const bough_node *at, void *item) {
     char where[120] = "";

@@ -43,7 +43,7 @@ typedef enum bough_key_kind {
     BOUGH_KEY_LIST,    // pointer to structs of schema `of`, and an int at count_offset. Written as a
                        // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
     BOUGH_KEY_FILE,    // the struct of schema `of`, read from the file of that name
-    BOUGH_KEY_CUSTOM,  // what `read` makes of it
+    BOUGH_KEY_CUSTOM,  // read by `read`
 } bough_key_kind;
 
 typedef struct bough_schema bough_schema;
@@ -76,7 +76,7 @@ struct bough_schema {
     size_t size;      // of the struct
     int n_key;
     const bough_key *key;
-    // What one key cannot see alone; called when all keys were read without an error.
+    // Checks across keys; called when all keys were read without an error.
     void (*check)(bough_schema_reader *reader, void *item);
 };
 
@@ -84,7 +84,7 @@ struct bough_schema {
 typedef struct bough_schema_file {
     struct bough_schema_file *next;
     const char *key, *path;     // "bodies[0].rod.structure"; as it is opened
-    bool absolute;              // as it is written
+    bool absolute;              // the key has an absolute path
     const bough_schema *schema; // by which its struct `item` was read; NULL: only the name is known
     void *item;
 } bough_schema_file;
@@ -101,7 +101,7 @@ typedef struct bough_schema_base {
     struct bough_schema_base *next; // the base of this one, NULL: it has none
     const char *path;               // as it is opened, and as its nodes name it
     const char *directory;          // of the paths in it, with its last slash; "" for the current one
-    bool absolute;                  // so is its name, or that of a file between it and the first one
+    bool absolute;                  // its path, or that of a file between it and the first one, is absolute
 } bough_schema_base;
 
 // Reads a file named `path` relative to the directory of the scene; see BOUGH_KEY_FILE.
@@ -122,8 +122,8 @@ struct bough_schema_reader {
 void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
                        void *item);
 
-// Adds an error with the path of the value being read, then `.key` unless key is "", "output.frames". It
-// stands at the key's value below `node` or, where that is left out, above it.
+// Adds an error with the path of the value being read, then `.key` unless key is "", "output.frames". Its
+// position is that of the key's value below `node` or, where that is missing, of the nearest one above.
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 

@@ -79,8 +79,8 @@ void bough_schema_help(const bough_schema *schema, int indent, FILE *stream) {
 
 // -- JSON Schema ----------------------------------------------------------------------------------
 
-// A schema as JSON Schema (draft 2020-12), for the completion and checks of editors. Values of a kind
-// of their own are not described further; what depends on another key's choice is only allowed.
+// A schema as JSON Schema (draft 2020-12), for the completion and checks of editors. Custom
+// values are not described further; a key that depends on another key's choice is allowed with any.
 
 // A number, or one with its unit.
 static const char quantity[] = "\"type\": [\"number\", \"string\"]";
@@ -189,7 +189,7 @@ static void put_object(const bough_schema *schema, FILE *stream) {
     fputs("]}", stream);
 }
 
-// A file on a base has any part of the keys, with what differs below them.
+// A file that builds on a base may have any of the keys, with any values below them.
 static void put_on_base(const bough_schema *schema, FILE *stream) {
     fputs(",\n{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {", stream);
     for (int i = 0; i < schema->n_key; i++) {

@@ -191,7 +191,7 @@ static size_t number_length(const char *text) {
 
 locale_t bough_c_locale(void) { return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); }
 
-// Angles without a unit: radians to one reader, degrees to the next. 0 is the same to both.
+// An angle without a unit may be meant in radians or in degrees; 0 is the same in both.
 static bool is_ambiguous(const char *number, bough_dimension dimension, double value, char why[160]) {
     bool angle = dimension == BOUGH_ANGLE, speed = dimension == BOUGH_ANGULAR_SPEED;
     if (value == 0 || !(angle || speed)) return false;

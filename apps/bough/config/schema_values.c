@@ -110,7 +110,7 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
     return n;
 }
 
-// Ranges come from our own tables.
+// Ranges are those of the tables of keys, which are not checked.
 bool bough_in_range(double value, const char *range) {
     if (range == NULL) return true;
     if (range[0] == '[') {
@@ -319,7 +319,7 @@ static int same_beginning(const char *a, const char *b) {
     return n;
 }
 
-// Among equally near words, the one with the longest common beginning: slips are rare there.
+// Among equally near words, the one with the longest common beginning: typing errors are rare there.
 const char *bough_nearest(const char *word, const char *const *candidates, int n) {
     size_t length = strlen(word);
     if (length >= WORD) return NULL;

@@ -86,7 +86,7 @@ static bool comes_before(const bough_error *a, const bough_error *b, const char 
     return a->column < b->column;
 }
 
-// A value that several places of the tree share has its error once.
+// Removes repeated errors of a value that several places of the tree share.
 static void drop_repetitions(bough_errors *errors) {
     int n = 0;
     for (int i = 0; i < errors->n; i++) {
@@ -243,7 +243,7 @@ static bool is_key(const reader *r) {
     return c->node->kind == BOUGH_MAPPING && (r->n_stack - c->start) % 2 == 0;
 }
 
-// Hands a node to the container that is open, or makes it the root.
+// Adds a node to the innermost open container, or makes it the root.
 static bool attach(reader *r, bough_node *node, yaml_mark_t at) {
     if (is_key(r) && node->kind != BOUGH_SCALAR) {
         return refuse(r, at, "a key must be plain text, not a list or a mapping");

@@ -27,7 +27,7 @@ typedef struct bough_node {
     struct bough_node **value; // (n)
     const char *text;          // of a scalar
     const char *file;
-    int line, column;   // from 1; line 0: no position, the file's name says all
+    int line, column;   // from 1; line 0: no position
     int height, weight; // as read: levels below; values below, this one included, aliases expanded
 } bough_node;
 
@@ -61,7 +61,7 @@ bough_status bough_errors_status(bough_errors *errors, const char *file, const c
 // Writes one line each: "file:line:col: error: path: text".
 void bough_errors_print(const bough_errors *errors, FILE *stream);
 
-// The same on stderr, which then says all: the status loses its message.
+// Prints them on stderr in place of the status's message, which becomes empty.
 void bough_errors_tell(const bough_errors *errors, bough_status *status);
 
 // The tree of a file; NULL after adding to `errors` why not.

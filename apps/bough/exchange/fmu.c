@@ -306,7 +306,7 @@ fmi3_status fmi3FreeFMUState(fmi3_instance self, fmi3_state *from) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
-// Whether two times are the same but for rounding: far less than a step apart, also long after time 0.
+// Whether two times are equal but for rounding: within far less than a step, also long after time 0.
 static bool near(double a, double b, double step) {
     return fabs(a - b) <= fmin(1e-9 * fmax(1, fabs(b)), 1e-3 * step);
 }
@@ -349,7 +349,7 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
 // -- functions of the standard that the FMU does not offer ----------------------------------------
 
 // The standard's functions that a co-simulation FMU of real numbers, without events, clocks and
-// derivatives, only shows: each answers that it is not there.
+// derivatives, must export but does not support: each returns an error.
 
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 

@@ -29,12 +29,12 @@ static int conclude(bough_session *s, bough_status status) {
     return s->code;
 }
 
-// A step has; the state means nothing.
+// Whether a step has failed, after which the state is undefined.
 static bool failed(const bough_session *s) { return !bough_is_ok(&s->run.outcome); }
 
 static bool is_open(const bough_session *s) { return s && s->open; }
 
-// What a call says that needs a scene, where there is none.
+// The failure of a call that needs a scene, without one.
 static int conclude_closed(bough_session *s, const char *call) {
     if (!s) return BOUGH_SESSION_OTHER;
     snprintf(s->error, sizeof s->error, "%s: the scene could not be opened", call);
@@ -59,7 +59,7 @@ static void keep_errors(bough_session *s, const bough_errors *errors) {
 
 // -- copies ---------------------------------------------------------------------------------------
 
-// What every copy begins with.
+// The beginning of every copy.
 typedef struct head {
     char magic[16];
     uint64_t kind;
@@ -75,7 +75,7 @@ static void take(bough_session *s, bough_snapshot *snapshot) {
     bough_run_snapshot(&s->run, snapshot);
 }
 
-// Two sessions understand each other's copies when the same numbers stand at the same places.
+// A copy is valid for any session whose copies have the same numbers at the same positions.
 static void describe_copy(bough_session *s) {
     const bough_master *m = s->run.simulation->master;
     const bough_assembly *a = m->assembly;
@@ -165,7 +165,7 @@ static bough_status build(bough_arena *arena, void *self) {
         if (listed) status.message[0] = '\0';
         return status;
     }
-    // nobody sees the errors unless the scene asks for them
+    // errors are estimated only where the scene asks for it
     if (!bough_node_find(scene->simulation.node, "error_estimate"))
         scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     BOUGH_TRY(bough_run_create(arena, scene, &s->run));

@@ -1,11 +1,11 @@
-/* Goes on from one moment in two ways: what_if SCENE SECONDS KEY=VALUE CHANNEL prints time, the
-   channel as it goes on, and as it does with the value replaced from that moment on. */
+/* Continues from one moment in two ways: what_if SCENE SECONDS KEY=VALUE CHANNEL prints the time, the
+   channel as the run continues, and with the value replaced from that moment on. */
 #include <bough.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Takes both sessions to the moment; the code. */
+/* Advances both sessions to the moment; returns the code. */
 static int branch(bough_session *run, bough_session *other, double moment) {
     int code = bough_session_code(run);
     while (code == BOUGH_SESSION_OK && bough_session_time(run) < moment) {

@@ -22,7 +22,7 @@ void bough_channels_group(bough_channels *list, bough_channel_sample *sample, vo
         (bough_channel_group){.sample = sample, .self = self, .first = list->count};
 }
 
-// Where the channel of that name stands, or would.
+// The slot of the channel of that name, an empty one without such a channel.
 static int *slot_of(const bough_channels *list, const char *name) {
     uint32_t hash = 2166136261u, mask = 2 * (uint32_t)list->capacity - 1;
     for (const char *c = name; *c; c++) hash = (hash ^ (unsigned char)*c) * 16777619u;

@@ -19,8 +19,8 @@ typedef enum bough_quantity_kind {
     BOUGH_KIND_MOMENT,
 } bough_quantity_kind;
 
-// Whose samples the values of a channel are. Those of the air approximate what is continuous; those of a
-// controller are what it does.
+// What a channel is sampled by. Samples of the air approximate a continuous quantity; those of a controller
+// are its output.
 typedef enum bough_sampling { BOUGH_CONTINUOUS, BOUGH_BY_AIR, BOUGH_BY_CONTROL } bough_sampling;
 
 typedef struct bough_channel {
@@ -50,7 +50,7 @@ typedef struct bough_channels {
     int count, capacity;
     int *slot; // (2 capacity) channels by the hash of their names: index + 1, 0 where there is none
     int group_count, group_capacity;
-    const double **known; // (1) values at present, which copies of the list share; NULL: the groups are asked
+    const double **known; // (1) present values, shared by copies of the list; NULL: the groups are evaluated
     bough_status status;  // BOUGH_INVALID where a name is not possible
 } bough_channels;
 
@@ -61,14 +61,14 @@ bough_channels bough_channels_start(bough_arena *arena);
 void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self);
 
 // Adds a channel with a printf-style name. Names are unique, neither empty nor "Time" nor with
-// blanks, since readers split the name row there; the first that is not is in the list's status, and no
+// blanks, since readers split the name row there; the first invalid one is in the list's status, and no
 // channel is added after it.
 void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Of the channel added last: what it means (the text must stay), the component of a vector that it is (1, 2,
-// 3; 0: a scalar), and whether its values belong to the last sample of the air or the control; such a channel
-// of motion is one of the air.
+// Describes the channel added last: its meaning (not copied), which component of a vector it is (1, 2, 3; 0:
+// a scalar), and whether its values belong to the last sample of the air or the control; such a channel of
+// motion is one of the air.
 void bough_channels_describe(bough_channels *list, const char *meaning, int component,
                              bough_sampling sampled);
 
@@ -84,10 +84,10 @@ int bough_channels_choose(const bough_channels *all, int n, const char *const *p
                           bough_channels *chosen);
 
 // Until the next call these are the values (count) of the list, of its copies and of what is chosen from it,
-// so that nobody evaluates them twice; NULL: none are known.
+// so that they are not evaluated twice; NULL: none are known.
 void bough_channels_know(const bough_channels *list, const double *value);
 
-// Asks every group where no values are known: value (count).
+// Evaluates every group unless the values are known: value (count).
 void bough_channels_sample(const bough_channels *list, double t, double *value);
 
 #endif

@@ -51,7 +51,7 @@ static void name_partial(const char *path, partial_path partial) {
 bough_status bough_folder_open_partial(const char *path, FILE **file) {
     partial_path partial;
     name_partial(path, partial);
-    // A pipe that nobody reads would hold the call up.
+    // without O_NONBLOCK the call would wait for a pipe's reader
     int descriptor = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
     *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
     if (*file) return bough_ok();
@@ -74,7 +74,7 @@ bough_status bough_folder_write(const char *folder, const char *name,
     return bough_folder_commit(path, file);
 }
 
-// A symbolic link was put there by somebody.
+// Regular files only: a symbolic link is not one that bough has made.
 void bough_folder_clean(const char *folder) {
     DIR *directory = opendir(folder);
     if (!directory) return;
@@ -208,7 +208,7 @@ static bough_status take(lock *l, const char *folder) {
         bough_status status = held ? refuse(folder, l->file) : bough_ok();
         close(l->file);
         l->file = -1;
-        // A file system without locks lets everybody write, as it always has.
+        // on a file system without locks several processes can write
         if (held || !taken) return status;
     }
 }

@@ -42,7 +42,7 @@ void bough_folder_discard(const char *path, FILE *file);
 
 // -- a file that grows with a run ------------------------------------------------------------------
 
-// What of it is on the disk for good.
+// The part of it that is on the disk.
 typedef struct bough_kept {
     long count; // rows or frames
     long bytes;
@@ -54,8 +54,8 @@ typedef struct bough_growing {
     long count;                // rows or frames so far
 } bough_growing;
 
-// Opens folder/name: a new one, or, where an earlier process has kept some of it, that to go on behind; the
-// rest of it is cut off. A file that has its final name becomes partial again. BOUGH_INVALID when there is
+// Opens folder/name: a new file, or one that continues after the part that an earlier process has kept, with
+// the rest cut off. A file that has its final name becomes partial again. BOUGH_INVALID when there is
 // less than was kept. The arena closes what is not finished.
 bough_status bough_growing_open(bough_arena *arena, const char *folder, const char *name, bough_kept kept,
                                 bough_growing *growing);
@@ -68,7 +68,7 @@ bough_status bough_growing_finish(bough_growing *growing);
 
 // -- one process at a time writes into a folder ---------------------------------------------------
 
-// Takes an existing folder until the arena is destroyed or the process ends, in whatever way. A folder
+// Locks an existing folder until the arena is destroyed or the process ends, in whatever way. A folder
 // that another process holds is refused with that process's number.
 bough_status bough_lock_folder(bough_arena *arena, const char *folder);
 

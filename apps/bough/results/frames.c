@@ -89,7 +89,7 @@ bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
     return bough_growing_keep(&f->list, kept);
 }
 
-// Removes the frames from number n on: files of exactly the names that are given above.
+// Removes the frames from number n on: files with exactly the names of frames.
 static bough_status remove_from(const char *folder, long n) {
     char path[BOUGH_PATH_MAX], name[32];
     bough_status status = bough_folder_path(folder, "frames", path);

@@ -23,7 +23,7 @@ typedef struct bough_frames_def {
     // Fills the section loads at these points at time t (Σ n_point × 3), in ground axes [N], [N m].
     void (*loads)(void *self, double t, double *force, double *moment);
     void *self;
-    bough_kept kept; // of an earlier process: the frames to go on behind; else 0
+    bough_kept kept; // of an earlier process: the frames to continue after; else 0
 } bough_frames_def;
 
 // Makes the folder for the frames and removes an older frames.pvd. All memory is taken here.

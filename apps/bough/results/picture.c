@@ -44,7 +44,7 @@ static const char *colour_of(int k) {
 
 // -- axes -----------------------------------------------------------------------------------------
 
-// Extends an axis to a value, unless it has no place there.
+// Extends an axis to a value, unless it cannot be drawn there.
 static void include(bough_axis *axis, double value) {
     if (axis->logarithmic) value = value > 0 ? log10(value) : (double)NAN;
     if (!isfinite(value)) return;
@@ -54,11 +54,11 @@ static void include(bough_axis *axis, double value) {
 
 // A margin at both ends, but not below 0; a logarithmic axis covers at least a factor of ten.
 static void widen(bough_axis *axis) {
-    const double share = 0.08; // of the length
+    const double ratio = 0.08; // to the length
     if (!(axis->low <= axis->high)) axis->low = 0, axis->high = axis->logarithmic ? 0 : 1;
-    double length = axis->high - axis->low, margin = share * length;
+    double length = axis->high - axis->low, margin = ratio * length;
     if (axis->logarithmic) margin = fmax(margin, 0.5 * (1 - length));
-    if (!(margin > 0)) margin = axis->low != 0 ? share * fabs(axis->low) : 1;
+    if (!(margin > 0)) margin = axis->low != 0 ? ratio * fabs(axis->low) : 1;
     if (axis->logarithmic || axis->low != 0) axis->low -= margin;
     axis->high += margin;
 }
@@ -194,7 +194,7 @@ static void draw_mark(FILE *svg, double x, double y, int colour, double size) {
             colour_of(colour), x, y, size > 0 ? size : 1, shapes[colour % 4]);
 }
 
-// The nearest place above or below y [px] where no label of the panel is yet, and notes it.
+// The nearest place above or below y [px] where no label of the panel is yet, and records it.
 static double free_place(labels *used, double left, double right, double y) {
     double at = y;
     for (int tried = 0; tried < 2 * MOST_LABELS; tried++) {
@@ -292,7 +292,7 @@ static void draw_legend(const bough_chart *c, double y, FILE *svg) {
     }
 }
 
-// That of the panels side by side, or more where the title or the legend needs it.
+// The width of the panels side by side, or of title or legend where they are wider.
 static int width_of(const bough_chart *c) {
     int columns = c->n_panel < c->per_row ? c->n_panel : c->per_row;
     int width = columns * panel_width(c);

@@ -47,7 +47,7 @@ typedef struct bough_chart_panel {
 } bough_chart_panel;
 
 // Panels of one size in rows, below them a legend of the first panel's lines. Filled in order: a line belongs
-// to the panel added last, a point to the line added last. Texts must stay.
+// to the panel added last, a point to the line added last. Texts are not copied.
 typedef struct bough_chart {
     bough_arena *arena;
     const char *title; // NULL: none

@@ -152,7 +152,7 @@ static bough_status write_head(bough_recorder *r, const char *title) {
     return bough_ok();
 }
 
-// The head is written again, for its outcome; the rows stay.
+// Writes the head again, for its outcome, and keeps the rows.
 static bough_status go_on(bough_recorder *r, const bough_recorder_def *def) {
     rewind(r->out.file);
     BOUGH_TRY(write_head(r, def->title));
@@ -207,7 +207,7 @@ bough_status bough_recorder_keep(bough_recorder *r, bough_kept *kept) {
     return bough_growing_keep(&r->out, kept);
 }
 
-// Where the device was full, readers would stumble over half a row.
+// Removes an incomplete last row, which a full device leaves and no reader expects.
 static void cut_to_whole_rows(const bough_recorder *r) {
     char partial[BOUGH_PATH_MAX + 16];
     snprintf(partial, sizeof partial, "%s.partial", r->out.path);

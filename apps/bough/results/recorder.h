@@ -21,7 +21,7 @@ typedef struct bough_recorder_def {
     const char *folder;             // an existing folder
     const char *title;              // one line: what was run
     const bough_channels *channels; // outlive the recorder
-    bough_kept kept;                // of an earlier process: the rows to go on behind; else 0
+    bough_kept kept;                // of an earlier process: the rows to continue after; else 0
 } bough_recorder_def;
 
 // Opens the file, writes its head and removes an older result of this name. All memory is taken
@@ -112,7 +112,7 @@ typedef struct bough_binary_def {
     const char *folder; // holds the complete channels.out
     const char *title;  // what was run
     const bough_channels *channels;
-    double interval; // between the rows [s]; a last row off this beat is left out
+    double interval; // between the rows [s]; a last row at another time is left out
 } bough_binary_def;
 
 // Appears under its name when complete. BOUGH_IO when channels.out cannot be read or the file not

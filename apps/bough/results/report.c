@@ -73,7 +73,7 @@ bough_status bough_report_channels(bough_arena *arena, const char *folder, FILE 
 // The texts that results may have; fields of one name are of different commands.
 static const struct text {
     const char *field, *file;
-    bool alone; // of a command that leaves none of those before
+    bool alone; // only where none of the files before exists
 } texts[] = {
     {"summary", "summary.json", false},  {"table", "table.txt", false}, {"rows", "verify.csv", true},
     {"rows", "blade-models.csv", true},  {"rows", "tune.csv", true},    {"rows", "campbell.csv", true},

@@ -24,7 +24,7 @@ static bough_status damaged(const char *folder, const char *name) {
 
 enum { LINE = 256, NAME = 64, MOST_POINTS = 1 << 20 };
 
-// Reads on to the line that begins so.
+// Reads up to a line with that beginning.
 static bool find_line(FILE *file, char line[LINE], const char *begin) {
     while (fgets(line, LINE, file)) {
         if (strncmp(line, begin, strlen(begin)) == 0) return true;
@@ -170,7 +170,7 @@ static void include(drawing *d, bough_vec3 x) {
     }
 }
 
-// Seen from upwind and aside, 10 degrees from above.
+// Viewed from upwind and from the side, 10 degrees from above.
 static void look(drawing *d) {
     const double azimuth = 62 * BOUGH_DEGREE, height = 10 * BOUGH_DEGREE;
     bough_vec3 deep = bough_v3(cos(azimuth), sin(azimuth), 0);
@@ -204,10 +204,10 @@ static void put(const drawing *d, char command, bough_vec3 x) {
 }
 
 // From blue at 0 to red.
-static void put_colour(double share, FILE *svg) {
+static void put_colour(double fraction, FILE *svg) {
     static const double colour[3][3] = {{86, 140, 200}, {230, 159, 0}, {213, 60, 30}};
-    int k = share < 0.5 ? 0 : 1;
-    double f = 2 * share - k;
+    int k = fraction < 0.5 ? 0 : 1;
+    double f = 2 * fraction - k;
     int c[3];
     for (int i = 0; i < 3; i++) c[i] = (int)lround((1 - f) * colour[k][i] + f * colour[k + 1][i]);
     fprintf(svg, "#%02x%02x%02x", c[0], c[1], c[2]);

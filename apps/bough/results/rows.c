@@ -117,7 +117,7 @@ static bough_status check_value(const packer *p, int k) {
                       p->def->channels->channel[k].name, x, p->in->value[0]);
 }
 
-// Counts the rows on the beat and finds each channel's range.
+// Counts the rows at equal intervals and finds each channel's range.
 static bough_status measure(packer *p) {
     for (long row = 0;; row++) {
         bool there = bough_rows_line(p->in);
@@ -164,7 +164,7 @@ static int longest_word(const bough_channels *c) {
     return (int)longest;
 }
 
-// Blanks fill a word's place.
+// Words are padded with blanks.
 static void put_head(const packer *p, FILE *out) {
     const bough_channels *c = p->def->channels;
     int width = longest_word(c);
