@@ -405,12 +405,13 @@ static double distance(const bough_scene_mode *a, const bough_scene_mode *b) {
 }
 
 // The least distance first. Modes of other bodies and directions are farther: but in round sections, and
-// where two modes nearly have one frequency, the direction means little.
+// where two modes nearly have one frequency, the direction means little. What is farther than half of |λ| is
+// another motion.
 static void pair_modes(const bough_vibration *v, const bough_vibration *other, bool *taken) {
-    static const double unlike = 4;
-    for (int pair = 0; pair < v->found && pair < other->found; pair++) {
-        double least = HUGE_VAL;
-        int first = -1, second = -1;
+    static const double unlike = 4, farthest = 0.5;
+    for (int first = 0, second; first >= 0;) {
+        double least = farthest;
+        first = second = -1;
         for (int i = 0; i < v->found; i++) {
             const bough_scene_mode *a = &v->mode[i];
             for (int j = 0; j < other->found && isnan(a->moved) && is_compared(a); j++) {
@@ -420,10 +421,12 @@ static void pair_modes(const bough_vibration *v, const bough_vibration *other, b
                 if (!taken[j] && is_compared(b) && cost < least) least = cost, first = i, second = j;
             }
         }
-        if (first < 0) return;
+        if (first < 0) break;
         taken[second] = true;
         v->mode[first].moved = distance(&v->mode[first], &other->mode[second]);
     }
+    for (int i = 0; i < v->found; i++)
+        if (isnan(v->mode[i].moved) && is_compared(&v->mode[i])) v->mode[i].moved = HUGE_VAL;
 }
 
 bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s, bough_vibration *v,

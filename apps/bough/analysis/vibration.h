@@ -45,7 +45,7 @@ typedef struct bough_scene_mode {
     double
         frequency_change;  // largest change from the mean over the azimuths to one, relative; NaN: not known
     double damping_change; // the same of the damping ratio
-    double moved;  // |λ − λ'|/|λ| to the mode on another mesh; NaN: not compared, or no such mode
+    double moved;  // |λ − λ'|/|λ| to the mode on another mesh; NaN: not compared, HUGE_VAL: no such mode
     double *share; // of the kinetic energy for each body of the scene, sum 1
     bool blades;   // all blades together have more kinetic energy than any other body
     int body;      // the body with the largest share; with `blades` the first blade

@@ -197,7 +197,7 @@ static double largest_residual(const bough_vibration *v) {
 // Chooses modes to be listed.
 typedef bool mode_choice(const bough_scene_mode *mode);
 static bool is_inexact(const bough_scene_mode *mode) { return mode->residual > fine; }
-static bool is_moved(const bough_scene_mode *mode) { return mode->moved > fine; }
+static bool is_moved(const bough_scene_mode *mode) { return mode->moved > fine && !isinf(mode->moved); }
 
 // Whether the damping at one azimuth differs from the mean by its own value, or is unknown without a left
 // vector.
@@ -245,17 +245,16 @@ static void print_azimuths(const bough_vibration *v) {
 }
 
 static bool is_not_compared(const bough_scene_mode *mode) { return isnan(mode->moved); }
+static bool is_alone(const bough_scene_mode *mode) { return isinf(mode->moved); }
 
 static void print_mesh(const bough_vibration *v) {
-    double most = 0;
-    int compared = 0;
-    for (int k = 0; k < v->found; k++) {
-        compared += !is_not_compared(&v->mode[k]);
-        most = fmax(most, v->mode[k].moved);
-    }
+    double most = -1; // of those that have a partner
+    for (int k = 0; k < v->found; k++)
+        if (!is_alone(&v->mode[k])) most = fmax(most, v->mode[k].moved);
     bool changed =
         print_numbers("warning: changed by more than 1 % with half the segments: mode", v, is_moved);
-    if (!changed && compared > 0)
+    if (print_numbers("warning: not found with half the segments: mode", v, is_alone)) changed = true;
+    if (!changed && most >= 0)
         printf("no mode changes by more than %.2g %% with half the segments\n", 100 * most);
     print_numbers("not compared with half the segments: mode", v, is_not_compared);
 }

@@ -226,6 +226,21 @@ TEST(another_mesh_moves_the_modes_as_it_should) {
     assert_false(compared);
 }
 
+// Five segments have thirty motions, ten have more: those without a partner are not said to be moved.
+TEST(a_mode_that_another_mesh_lacks_has_no_partner) {
+    const char *sets[] = {"bodies[0].rod.segments=10", "modes.of=scene", NULL};
+    found a = modes_of("apps/beams/blade.yaml", sets, 60);
+    bool compared;
+    int alone = 0;
+    check_ok(bough_vibration_compare(a.arena, a.s, &a.v, &compared));
+    for (int k = 0; k < a.v.found; k++) {
+        alone += isinf(a.v.mode[k].moved);
+        assert_true(isinf(a.v.mode[k].moved) || a.v.mode[k].moved < 0.5);
+    }
+    assert_true(a.v.found > 40 && alone >= a.v.found - 30);
+    assert_true(a.v.mode[0].moved < 0.01);
+}
+
 // The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
 TEST(shapes_join_the_bodies) {
     const char *sets[] = {"modes.shapes=true", NULL};
