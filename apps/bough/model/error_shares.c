@@ -20,13 +20,14 @@ static void unknown(bough_error_share *share, const char *why) {
 // -- further runs ---------------------------------------------------------------------------------
 
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
+static const double most_alone = 2; // the same by one that is coarser
 static const double little = 3e6;   // work of a few milliseconds
 
 typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
-    double left; // work
+    double left, left_alone; // work of all, and of the present one
     bough_error_shares *shares;
 } finding;
 
@@ -44,6 +45,8 @@ typedef struct further {
     between to_companion, to_run;
 } further;
 
+enum { OWN_MESH = BOUGH_COARSER_ALL & ~BOUGH_COARSER_MESH };
+
 // A macro step of a further run. Its work is limited: runs that need much more than the run and its companion
 // follow another solution and may never end.
 static bough_status step(finding *x, const bough_simulation *s) {
@@ -51,11 +54,12 @@ static bough_status step(finding *x, const bough_simulation *s) {
     if (x->stop && x->stop())
         return bough_fail(BOUGH_INTERRUPTED, "interrupted during the search for the cause of the error");
     BOUGH_TRY(bough_step(s->master));
-    x->left -= bough_simulation_work(s) - before;
-    if (x->left >= 0) return bough_ok();
+    double work = bough_simulation_work(s) - before;
+    x->left -= work, x->left_alone -= work;
+    if (x->left >= 0 && x->left_alone >= 0) return bough_ok();
     return bough_fail(BOUGH_FAILED,
                       "further runs took more than %.0f times the work of this one and its companion",
-                      most_times);
+                      x->left < 0 ? most_times : most_alone);
 }
 
 // Updates the largest differences by two samples. Samples after the end of the companion are NaN and do not
@@ -69,6 +73,53 @@ static void compare(const bough_channels *channels, const double *a, const doubl
         x->largest[i] =
             fmax(x->largest[i], (channel->sampled && held ? x->held : x->part) * fabs(difference));
     }
+}
+
+static bool has_part(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_TIME) return true;
+    if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (bough_scene_has_mesh(&scene->body[i])) return true;
+    }
+    return false;
+}
+
+// The largest error of a motion relative to its range.
+static double largest_of(const bough_companion *c, const double *error) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, error);
+    return v.channel < 0 ? 0 : v.relative;
+}
+
+static const double hardly = 0.25, hardly_yet = 0.05; // of the mesh's error
+
+// Whether the mesh causes the error and no other part is needed. The rest must be much smaller: the companion
+// of a coupled run is monolithic, and errors may cancel.
+static bool is_by_mesh(const finding *x, double much) {
+    const bough_companion *c = x->companion;
+    const bough_scene_simulation *s = &c->run->scene->simulation;
+    const bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
+    if (s->error_shares || mesh->unknown[0] || c->flutters || c->reason[0]) return false;
+    return largest_of(c, mesh->others) <= fmin(s->error_bound, much * largest_of(c, mesh->largest));
+}
+
+// The same before the end, where the mesh's error is beyond the bound. Without air and coupling schemes a
+// rest that is so small hardly grows faster than the mesh's error, so that both are extrapolated in
+// proportion.
+static bool is_by_mesh_early(finding *x) {
+    const bough_scene *scene = x->companion->run->scene;
+    const bough_scheme *scheme = bough_scheme_at(scene->simulation.coupling.scheme);
+    bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
+    double own = largest_of(x->companion, mesh->largest),
+           whole = largest_of(x->companion, x->companion->error);
+    double bound = scene->simulation.error_bound, grows = fmax(whole / own, 1);
+    if (has_part(scene, BOUGH_SHARE_AIR) || !scheme->one_system || own <= bound || !is_by_mesh(x, hardly_yet))
+        return false;
+    if (grows * largest_of(x->companion, mesh->others) > bound) return false;
+    for (int i = 0; i < x->shares->n_channel; i++) {
+        mesh->largest[i] = fmax(mesh->largest[i], x->companion->error[i]);
+        mesh->others[i] *= grows;
+    }
+    return true;
 }
 
 static bough_status run_beside(bough_arena *arena, void *self) {
@@ -86,20 +137,12 @@ static bough_status run_beside(bough_arena *arena, void *self) {
         bough_other_run_sample(&other);
         compare(&other.channels, companion, other.value, row[BOUGH_RECORD_HELD] != 0, &f->to_companion);
         compare(&other.channels, run, other.value, !bough_master_sampled(m), &f->to_run);
+        if (f->parts == OWN_MESH && is_by_mesh_early(f->of)) break;
     }
     return bough_ok();
 }
 
 // -- errors of mesh, air and time -----------------------------------------------------------------
-
-static bool has_part(const bough_scene *scene, int kind) {
-    if (kind == BOUGH_SHARE_TIME) return true;
-    if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
-    for (int i = 0; i < scene->n_body; i++) {
-        if (bough_scene_has_mesh(&scene->body[i])) return true;
-    }
-    return false;
-}
 
 static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
 
@@ -123,30 +166,13 @@ static bough_status find_share(finding *x, int kind) {
                  bough_error_share_name((bough_error_share_kind)kind));
         return bough_ok();
     }
+    x->left_alone = most_alone * bough_companion_work(c) + little;
     further f = {x, BOUGH_COARSER_ALL & ~coarser[kind], between_companion_and(c, kind, share->largest),
                  (between){c->share, c->share_held, share->others}};
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (!bough_is_ok(&status)) unknown(share, status.message);
     return bough_ok();
-}
-
-// The largest error of a motion relative to its range.
-static double largest_of(const bough_companion *c, const double *error) {
-    bough_error_verdict v = bough_error_verdict_of(c, true, error);
-    return v.channel < 0 ? 0 : v.relative;
-}
-
-static const double hardly = 0.25; // of the mesh's error
-
-// Whether the mesh causes the error and no other part is needed. The rest must be much smaller: the companion
-// of a coupled run is monolithic, and errors may cancel.
-static bool is_by_mesh(const finding *x) {
-    const bough_companion *c = x->companion;
-    const bough_scene_simulation *s = &c->run->scene->simulation;
-    const bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
-    if (s->error_shares || mesh->unknown[0] || c->flutters || c->reason[0]) return false;
-    return largest_of(c, mesh->others) <= fmin(s->error_bound, hardly * largest_of(c, mesh->largest));
 }
 
 // The mesh first: that run is the cheapest, and often the only one.
@@ -162,7 +188,7 @@ static bough_status find(finding *x) {
         memcpy(share[BOUGH_SHARE_TIME].largest, c->error, size);
         return bough_ok();
     }
-    bool alone = is_by_mesh(x);
+    bool alone = is_by_mesh(x, hardly);
     if (air && !alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_AIR));
     if (!alone) BOUGH_TRY(find_share(x, BOUGH_SHARE_TIME));
     // with two parts each is the remainder of the other
@@ -250,6 +276,7 @@ static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share
     double *own = bough_arena_doubles(arena, n + 1), *others = x->shares->share[kind].others;
     double part = air ? bough_finer_air_share(c->run->scene) : bough_finer_time_share();
     further f = {.of = x, .parts = air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, .to_run = {part, part, own}};
+    x->left_alone = x->left;
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
@@ -315,7 +342,11 @@ static bough_status prove_causes(bough_arena *arena, finding *x) {
 
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares) {
-    finding x = {c, has_lost(c), stop, most_times * bough_companion_work(c) + little, shares};
+    finding x = {.companion = c,
+                 .lost = has_lost(c),
+                 .stop = stop,
+                 .left = most_times * bough_companion_work(c) + little,
+                 .shares = shares};
     double cpu = bough_cpu_clock(false);
     *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
     for (int k = 0; k < BOUGH_SHARES; k++)

@@ -373,6 +373,30 @@ TEST(finer_steps_prove_an_error_in_time) {
     free(truth);
 }
 
+static int asked;
+
+static bool count_steps(void) {
+    asked++;
+    return false;
+}
+
+// Five segments: the search needs a part of one further run, whose rest stays small.
+TEST(a_mesh_far_beyond_the_bound_is_proved_early) {
+    check_arena(arena);
+    bough_run r;
+    bough_error_shares shares;
+    run_all(arena, "tests/data/scenes/tumbling.yaml", (const char *const[]){NULL}, &r);
+    asked = 0;
+    check_ok(bough_error_shares_find(arena, r.companion, count_steps, &shares));
+    double mesh = bough_error_verdict_of(r.companion, true, shares.share[BOUGH_SHARE_MESH].largest).relative;
+    double time = bough_error_verdict_of(r.companion, true, shares.share[BOUGH_SHARE_TIME].largest).relative;
+    double whole = bough_error_verdict_of(r.companion, true, r.companion->error).relative;
+    print_message("%d macro steps of %ld; error %.2g, mesh %.2g, time %.2g\n", asked,
+                  r.simulation->master->steps, whole, mesh, time);
+    assert_true(asked > 0 && asked < 0.9 * (double)r.simulation->master->steps);
+    assert_true(mesh > 0.05 && mesh >= whole && time < 0.05 * mesh);
+}
+
 #define COARSE_BLADES                                                                                        \
     "simulation.duration=6 s", "simulation.output.interval=0.02", "simulation.output.from=0",                \
         "bodies[3-5].rod.segments=12", "bodies[tower].rod.segments=6",                                       \
