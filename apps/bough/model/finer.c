@@ -18,7 +18,8 @@ static const double least_jump = 0.1;
 // library would write to the companion's file.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
-    return (bough_scene_loosest_rtol(scene) >= tight || scene->aero.node) && !scene->control.library;
+    double rtol = fmax(scene->simulation.master.rtol, bough_scene_loosest_rtol(scene));
+    return (rtol >= tight || scene->aero.node) && !scene->control.library;
 }
 
 // Stores the memory of the sampled loads of a simulation.
