@@ -70,7 +70,7 @@ TEST_IN_FOLDER(an_interrupted_study_goes_on) {
     char shown[STUDY_SHOWN];
     check_fails(perform(*context, 0, 0, 3000, shown), BOUGH_INTERRUPTED, "interrupted after");
     assert_in_range(count_results(*context), 1, CELLS + REFERENCES - 1);
-    check_ok(perform(*context, 0, 0, 100000, shown));
+    check_ok(perform(*context, 0, 0, 10000000, shown));
     assert_non_null(strstr(shown, "6 of 12 held, 6 stopped with a diagnosis, 0 silent"));
     assert_int_equal(count_results(*context), CELLS + REFERENCES);
 }

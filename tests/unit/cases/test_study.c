@@ -274,7 +274,7 @@ TEST_IN_FOLDER(other_settings_are_run_anew_and_a_grown_grid_is_completed) {
                         0, table),
                 BOUGH_INTERRUPTED, "interrupted after");
     static const char grown[] =
-        HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, gauss-seidel]\n"
+        HEAD REFERENCE "grid:\n  simulation.coupling.scheme: [monolithic, frozen, ramp]\n"
                        "  simulation.macro_step: [1 ms, 4 ms]\n" COMMON MEASURES;
     check_ok(perform(*context, grown, ALL, table));
     assert_in_range(asked, 1, whole - 1);
