@@ -128,8 +128,10 @@ BOUGH_INLINE response in_balance(const bough_rotor *rotor, blade_rows r, int j, 
     double loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3, factor = r.solidity[j] / (4 * loss * v),
            a = r.axial[j];
     sine_cosine phi = lane_sine_cosine(r.phi[j]);
-    double decline = rotor->induction.tip_loss ? loss_decline(rotor->station.tip_factor[j], phi) : 0;
-    decline += rotor->induction.hub_loss ? loss_decline(rotor->station.hub_factor[j], phi) : 0;
+    // 0 or 1: with a branch the loop is not vectorised
+    double tip = rotor->induction.tip_loss ? 1 : 0, hub = rotor->induction.hub_loss ? 1 : 0;
+    double decline = tip * loss_decline(rotor->station.tip_factor[j], phi) +
+                     hub * loss_decline(rotor->station.hub_factor[j], phi);
     // ∂R/∂u of the balance: momentum, loss factor, blade
     double free = 1 - 2 * a + a * (1 - a) * v / (w * loss) * decline;
     double sum = free + factor * w * slope, scale = 1 / (sum > 0.3 ? sum : 0.3);
