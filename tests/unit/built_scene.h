@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+static const char *const no_sets[] = {NULL}; // no values are replaced
+
 // Reads the scene in that file; `sets` ends with NULL.
 static inline bough_scene *scene_read_file(bough_arena *arena, const char *file, const char *const *sets) {
     bough_errors errors = {.arena = arena};
@@ -34,16 +36,29 @@ static inline bough_simulation *scene_build(bough_arena *arena, const char *path
     return s;
 }
 
+// Memory until the end of the block, and in it a simulation, or a run, of the scene at `path`.
+#define check_build(arena, s, path, sets)                                                                    \
+    check_arena(arena);                                                                                      \
+    bough_simulation *s = scene_build(arena, path, sets)
+
+// The same with the values that are replaced, one text each.
+#define check_build_with(arena, s, path, ...)                                                                \
+    check_build(arena, s, path, ((const char *const[]){__VA_ARGS__, NULL}))
+
+#define check_run(arena, r, path, sets)                                                                      \
+    check_arena(arena);                                                                                      \
+    bough_run r;                                                                                             \
+    check_ok(bough_run_create(arena, scene_read(arena, path, sets), &r))
+
 // A scene of this text.
 static inline bough_simulation *scene_build_text(bough_arena *arena, const char *text) {
-    static const char *const none[] = {NULL};
     char file[SCRATCH_NAME];
     bough_simulation *s = NULL;
     FILE *stream = fdopen(mkstemp(scratch_name(file)), "w");
     assert_non_null(stream);
     fputs(text, stream);
     fclose(stream);
-    bough_scene *scene = scene_read_file(arena, file, none);
+    bough_scene *scene = scene_read_file(arena, file, no_sets);
     unlink(file);
     check_ok(bough_simulation_build(arena, scene, &s));
     return s;

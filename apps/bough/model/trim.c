@@ -29,7 +29,9 @@ static double surplus(search *x, double speed, double pitch) {
     bough_simulation *s = x->simulation;
     int q, v;
     double factor;
-    if (!bough_is_ok(&x->status) || x->tries++ >= MOST_TRIES) return (double)NAN;
+    if (bough_is_ok(&x->status) && x->tries++ == MOST_TRIES)
+        x->status = bough_fail(BOUGH_FAILED, "no steady operation found in %d tries", MOST_TRIES);
+    if (!bough_is_ok(&x->status)) return (double)NAN;
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &q, &v);
     bough_assembly_states(x->assembly, x->state);
     s->tree->initial[v] = x->state[v] = speed;
@@ -119,9 +121,6 @@ bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, cons
         seek_pitch(&x, speed, f);
     } else if (bough_is_ok(&x.status) && fabs(f) > tolerance) {
         seek_speed(&x, speed, f, pitch);
-    }
-    if (bough_is_ok(&x.status) && x.tries > MOST_TRIES) {
-        x.status = bough_fail(BOUGH_FAILED, "no steady operation found in %d tries", MOST_TRIES);
     }
     return x.status;
 }

@@ -278,8 +278,7 @@ TEST(modes_are_within_their_residuals) {
 static double swings_grow(double speed, const char *mass) {
     char wind[48];
     snprintf(wind, sizeof wind, "aero.wind.speed=%.6f m/s", speed);
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, wing, (const char *const[]){wind, mass, NULL});
+    check_build_with(arena, s, wing, wind, mass);
     double first = 0, last = 0, from = 0, to = 0, before[2] = {0, 0};
     while (!bough_master_done(s->master)) {
         scene_step(s);
@@ -330,9 +329,7 @@ TEST(speed_follows_the_slope_of_the_torque) {
     for (int k = 0; k < 2; k++) {
         double slope = torque_at(wind[k], "bodies[2].joint.speed=12.02 rpm") -
                        torque_at(wind[k], "bodies[2].joint.speed=11.98 rpm");
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml",
-                                          (const char *const[]){OPERATION("12 m/s"), wind[k], NULL});
+        check_build_with(arena, s, "apps/turbine/land-operation.yaml", OPERATION("12 m/s"), wind[k]);
         bough_vibration v;
         check_ok(bough_vibration_find(arena, s, 4, &v));
         assert_int_equal(v.n_blade, 3);

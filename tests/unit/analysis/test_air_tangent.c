@@ -24,8 +24,7 @@ static void compare(const double *a, const double *b, size_t n, double *differen
 }
 
 TEST(equal_blades_at_once_have_the_tangent_of_each) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/turbine/land-operation.yaml", before_the_tower);
+    check_build(arena, s, "apps/turbine/land-operation.yaml", before_the_tower);
     bough_vibration_point x;
     bough_air_tangent each = {0}, at_once = {0};
     check_ok(bough_vibration_point_find(arena, s, 0, &x));

@@ -104,8 +104,7 @@ typedef struct air {
 } air;
 
 static air air_of(const char *const *sets) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/turbine/power.yaml", sets);
+    check_build(arena, s, "apps/turbine/power.yaml", sets);
     double factor;
     bough_aero_link_hold(s->aero, 0);
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);

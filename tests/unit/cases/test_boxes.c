@@ -51,10 +51,10 @@ TEST(a_lent_box_is_the_scenes_own) {
 }
 
 TEST(a_wind_without_turbulence_has_no_box) {
-    static const char *const none[] = {NULL}, *const gust[] = {"aero.wind.condition=eog", NULL};
+    static const char *const gust[] = {"aero.wind.condition=eog", NULL};
     bough_arena *arena = bough_arena_create();
     bough_boxes *boxes = bough_boxes_create(arena, 1);
-    assert_null(bough_boxes_lend(boxes, scene_read(arena, "apps/turbine/runup.yaml", none)));
+    assert_null(bough_boxes_lend(boxes, scene_read(arena, "apps/turbine/runup.yaml", no_sets)));
     assert_null(bough_boxes_lend(boxes, scene_read(arena, operation, gust)));
     bough_boxes_give_back(boxes, NULL);
     bough_arena_destroy(arena);

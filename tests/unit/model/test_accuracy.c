@@ -175,9 +175,7 @@ static void record(const char *path, const char *const *sets, const char *last, 
     int n = 1;
     for (; *sets; sets++) all[n++] = *sets;
     all[n] = last;
-    check_arena(arena);
-    bough_run run;
-    check_ok(bough_run_create(arena, scene_read(arena, path, all), &run));
+    check_run(arena, run, path, all);
     r->n_channel = run.channels.count;
     assert_true(r->n_channel <= MOST_CHANNELS);
     bough_run_start(&run);

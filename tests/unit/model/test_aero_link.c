@@ -367,8 +367,7 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
                                 "simulation.micro.step=2.5 ms",
                                 "simulation.threads=1",
                                 NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
+    check_build(arena, s, "apps/turbine/runup.yaml", sets);
     for (int k = 0; k < ROWS; k++) {
         bough_quaternion p;
         for (int i = 0; i < 8; i++) scene_step(s);

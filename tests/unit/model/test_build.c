@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const no_sets[] = {NULL};
 static const char runup[] = "apps/turbine/runup.yaml", arms[] = "tests/data/scenes/arms.yaml";
 
 // -- parts ----------------------------------------------------------------------------------------
@@ -34,8 +33,7 @@ TEST(scene_without_aero_samples_nothing) {
 TEST(rods_take_ports_in_the_order_of_the_scene) {
     static const char *const names[] = {"third", "stiff", "first"};
     static const int ports[] = {0, -1, 1}, bodies[] = {0, 2, 3};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, no_sets);
+    check_build(arena, s, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         const bough_beam *beam = &s->beam[k];
         assert_string_equal(beam->body->name, names[k]);
@@ -55,8 +53,7 @@ TEST(rods_take_ports_in_the_order_of_the_scene) {
 
 // Each rod is moved by its own root and its wrench returns there.
 TEST(rods_are_connected_to_their_roots) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, no_sets);
+    check_build(arena, s, arms, no_sets);
     const bough_assembly *a = s->master->assembly;
     static const double radius[] = {3, 1}; // of the ports' roots
     for (int p = 0; p < 2; p++) {
@@ -77,9 +74,7 @@ TEST(rods_are_connected_to_their_roots) {
 }
 
 TEST(rigid_blades_leave_the_tree_alone) {
-    static const char *const sets[] = {"bodies[3-5].fidelity=rigid", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, runup, sets);
+    check_build_with(arena, s, runup, "bodies[3-5].fidelity=rigid");
     assert_int_equal(s->n_rod, 0);
     assert_int_equal(s->n_beam, 3);
     assert_int_equal(s->leader.system.n_state, 2);
@@ -98,9 +93,7 @@ TEST(equal_beams_have_one_mesh) {
                                         "bodies[first].rod.mass=[1.5, 0, 0, 2e-3, 3e-3, 1e-9]",
                                         "bodies[first].rod.damping=[0, 0, 0, 0, 0, 1e-3]"};
     for (int k = 0; k < 4; k++) {
-        const char *const sets[] = {other[k], NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, arms, sets);
+        check_build_with(arena, s, arms, other[k]);
         assert_ptr_not_equal(s->beam[1].def.stiffness, s->beam[0].def.stiffness);
         assert_int_equal(s->beam[2].def.stiffness == s->beam[0].def.stiffness, k == 0);
         assert_string_equal(s->beam[2].def.name, "first");
@@ -143,9 +136,7 @@ static const char carrying[] = "tests/data/scenes/carrying.yaml";
 TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
     static const char *const fidelity[] = {"bodies[0].fidelity=rod", "bodies[0].fidelity=rigid"};
     for (int k = 0; k < 2; k++) {
-        const char *const sets[] = {fidelity[k], NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, carrying, sets);
+        check_build_with(arena, s, carrying, fidelity[k]);
         bough_transform pose = pose_of(s, "weight");
         check_vec3(pose.position, bough_v3(1, -0.3, 2), 1e-14, 0);
         check_near(pose.rotation.c1.x, 0, 0, 1e-15);
@@ -155,8 +146,7 @@ TEST(bodies_hang_on_the_end_of_a_rod_bent_or_rigid) {
 }
 
 TEST(end_of_a_rod_is_connected_to_its_body) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, carrying, no_sets);
+    check_build(arena, s, carrying, no_sets);
     const bough_assembly *a = s->master->assembly;
     const bough_beam *beam = &s->beam[0];
     assert_int_equal(beam->end, 0);
@@ -180,8 +170,7 @@ static bough_twist velocity_of(const bough_simulation *s, const char *body) {
 
 // The hub stands at 90°: what points along z at 0 points along −y.
 TEST(bodies_start_where_the_scene_puts_them) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, no_sets);
+    check_build(arena, s, arms, no_sets);
     double half = sqrt(3) / 2;
     check_vec3(pose_of(s, "first").position, bough_v3(0, -1, 10), 0, 1e-14);
     check_vec3(pose_of(s, "stiff").position, bough_v3(0, 1, 10 - 2 * half), 0, 1e-14);
@@ -202,8 +191,7 @@ TEST(beams_move_with_the_hub_at_first) {
     static const char *const names[] = {"third", "stiff", "first"};
     bough_vec3 omega = {2, 0, 0}, hub = {0, 0, 10};
     bough_vertex_motion vertex[5];
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, no_sets);
+    check_build(arena, s, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         bough_transform root = pose_of(s, names[k]);
         bough_simulation_beam_motion(s, &s->beam[k], vertex);
@@ -219,10 +207,8 @@ TEST(beams_move_with_the_hub_at_first) {
 }
 
 TEST(a_body_may_have_its_own_sub_solver) {
-    static const char *const sets[] = {"bodies[0].micro.solver=arkode-esdirk",
-                                       "simulation.micro.solver=generalized-alpha", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, sets);
+    check_build_with(arena, s, arms, "bodies[0].micro.solver=arkode-esdirk",
+                     "simulation.micro.solver=generalized-alpha");
     assert_string_equal(s->rod[0].solver, "ARKODE ESDIRK");
     assert_string_equal(s->rod[1].solver, "generalised-α");
     for (int k = 0; k < 5; k++) {
@@ -295,9 +281,7 @@ static void check_inertia(bough_inertia value, bough_inertia expected, double to
 }
 
 TEST(rigid_blades_have_the_inertia_of_their_table) {
-    static const char *const sets[] = {"bodies[3-5].fidelity=rigid", "bodies[3-5].rod.segments=12", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, runup, sets);
+    check_build_with(arena, s, runup, "bodies[3-5].fidelity=rigid", "bodies[3-5].rod.segments=12");
     bough_mat3 hub = {{5.1414234e6, 0, 0}, {0, 2.6e6, 0}, {0, 0, 2.6e6}};
     bough_inertia expected = {56780, {0, 0, 0}, hub};
     for (int b = 0; b < 3; b++) {
@@ -313,8 +297,7 @@ TEST(rigid_blades_have_the_inertia_of_their_table) {
 TEST(rigid_arms_have_their_mass_where_the_section_says) {
     static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid", NULL};
     static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, arms, sets);
+    check_build(arena, s, arms, sets);
     bough_inertia expected = {50, {0, 0, 0}, {{5, 0, 0}, {0, 3, 0}, {0, 0, 3}}};
     for (int k = 0; k < 3; k++) { // 1.5 kg/m from 0 to 2 m
         double cx = k == 1 ? 0.02 : 0, cy = k == 1 ? -0.01 : 0, xy = k == 1 ? 1e-3 : 0;
@@ -365,10 +348,8 @@ static int final_state(const char *scheme, int threads, double *state) {
     char scheme_set[64], thread_set[64];
     snprintf(scheme_set, sizeof scheme_set, "simulation.coupling.scheme=%s", scheme);
     snprintf(thread_set, sizeof thread_set, "simulation.threads=%d", threads);
-    const char *sets[] = {"simulation.duration=1 s",    "simulation.macro_step=4 ms",  scheme_set, thread_set,
-                          "simulation.micro.step=2 ms", "bodies[3-5].rod.segments=12", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, runup, sets);
+    check_build_with(arena, s, runup, "simulation.duration=1 s", "simulation.macro_step=4 ms", scheme_set,
+                     thread_set, "simulation.micro.step=2 ms", "bodies[3-5].rod.segments=12");
     while (!bough_master_done(s->master)) scene_step(s);
     const bough_assembly *a = s->master->assembly;
     assert_true(a->n_state + a->n_output <= MOST_STATES);
@@ -396,10 +377,9 @@ TEST(threads_do_not_change_a_bit_of_any_scheme) {
 
 // A base of 0.9 MHz beside a rod, which the tree's integrator cannot follow through a macro step.
 TEST(a_tree_that_takes_too_many_steps_says_so) {
-    const char *const sets[] = {
-        "simulation.coupling.scheme=frozen", "simulation.error_estimate=none",
-        "bodies[base].joint={kind: prismatic, axis: x, parent: ground, speed: 1 m/s, stiffness: 1e14}", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/small-vibration.yaml", sets);
+    check_build_with(
+        arena, s, "tests/data/scenes/small-vibration.yaml", "simulation.coupling.scheme=frozen",
+        "simulation.error_estimate=none",
+        "bodies[base].joint={kind: prismatic, axis: x, parent: ground, speed: 1 m/s, stiffness: 1e14}");
     check_fails(bough_step(s->master), BOUGH_FAILED, "20000 steps do not reach the end of the macro step");
 }

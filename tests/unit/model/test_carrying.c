@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const no_sets[] = {NULL};
 static const char tip_weight[] = "tests/data/scenes/tip-weight.yaml";
 static const char mast[] = "tests/data/scenes/tower.yaml";
 static const char parked[] = "tests/data/scenes/parked.yaml";
@@ -32,8 +31,7 @@ static void run(bough_simulation *s) {
 
 // At one time they are found once, and again after an update, then under the forces of that moment.
 TEST(accelerations_stay_until_the_next_update) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, tip_weight, no_sets);
+    check_build(arena, s, tip_weight, no_sets);
     for (int k = 0; k < 3; k++) scene_step(s);
     double t = s->master->time, *force = s->master->coupling->input;
     bough_simulation_update(s);
@@ -62,8 +60,7 @@ static void flexibility(double f[2][2]) {
 TEST(weight_bends_a_cantilever_as_beam_theory_says) {
     double f[2][2], weight = 9.8 * mass, own = 9.8 * 1e-4;
     flexibility(f);
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, tip_weight, no_sets);
+    check_build(arena, s, tip_weight, no_sets);
     check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
     double expected = weight * (f[0][0] + arm * f[0][1]) + own * pow(length, 4) / (8 * bending);
     check_near(tip_of(s).x, expected, 2e-5, 0); // the body's x points down
@@ -101,8 +98,7 @@ TEST(weight_swings_on_a_cantilever_as_beam_theory_says) {
     double a = f[0][0] * m00 + f[0][1] * m01, b = f[0][0] * m01 + f[0][1] * m11;
     double c = f[1][0] * m00 + f[1][1] * m01, d = f[1][0] * m01 + f[1][1] * m11;
     double largest = 0.5 * (a + d) + sqrt(0.25 * (a - d) * (a - d) + b * c);
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, tip_weight, no_sets);
+    check_build(arena, s, tip_weight, no_sets);
     check_near(frequency(s, 0, 0.1), 1 / (2 * BOUGH_PI * sqrt(largest)), 1e-3, 0);
 }
 
@@ -113,8 +109,7 @@ TEST(spring_takes_hold_of_a_rod) {
     const double wire = 1000, slack = 1e-3, own = 9.8 * 1e-4;
     double f[2][2];
     flexibility(f);
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/wire.yaml", no_sets);
+    check_build(arena, s, "tests/data/scenes/wire.yaml", no_sets);
     check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
     double sag = own * pow(length, 4) / (8 * bending);
     double force = (slack + sag) / (1 / wire + f[0][0]), tension;
@@ -168,8 +163,7 @@ TEST(rods_in_a_row_are_the_whole) {
 
 TEST(weight_at_an_inner_vertex_bends_the_beam_as_theory_says) {
     const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/mid-weight.yaml", no_sets);
+    check_build(arena, s, "tests/data/scenes/mid-weight.yaml", no_sets);
     check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
     double expected = weight * (pow(from, 3) / (3 * bending) + from / shear +
                                 (length - from) * from * from / (2 * bending)) +
@@ -215,8 +209,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
 }
 
 TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/tumbling.yaml", no_sets);
+    check_build(arena, s, "tests/data/scenes/tumbling.yaml", no_sets);
     bough_rod_scratch scratch;
     bough_rod_scratch_init(&scratch, arena, bough_rod_body_model(s->beam[0].rod));
     invariants start = measure(s, &scratch);
@@ -238,9 +231,7 @@ TEST(tumbling_rod_with_an_arm_conserves_momentum_and_energy) {
 
 // The mast's top after half a second and the arm's angle.
 static void end_of_run(const char *scheme, const char *macro_step, double end[4]) {
-    const char *const sets[] = {scheme, macro_step, "simulation.duration=0.5 s", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, mast, sets);
+    check_build_with(arena, s, mast, scheme, macro_step, "simulation.duration=0.5 s");
     run(s);
     bough_vec3 x = tip_of(s);
     int q, v;
@@ -291,8 +282,7 @@ TEST(ramp_is_of_second_order_on_a_mast) {
 TEST(parked_turbine_swings_as_published) {
     static const double published[] = {0.3195, 0.3164};
     for (int axis = 0; axis < 2; axis++) {
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, parked, no_sets);
+        check_build(arena, s, parked, no_sets);
         check_near(frequency(s, axis, 0.6), published[axis], 0.02, 0);
     }
 }
@@ -303,8 +293,7 @@ TEST(tower_with_rigid_blades_swings_as_by_ritz) {
     static const char *const sets[] = {"gravity=[0, 0, 0]", "bodies[3-5].fidelity=rigid", NULL};
     static const double ritz[] = {0.3233 * 0.996, 0.3211 * 0.996};
     for (int axis = 0; axis < 2; axis++) {
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, parked, sets);
+        check_build(arena, s, parked, sets);
         check_near(frequency(s, axis, 0.6), ritz[axis], 3e-3, 0);
     }
 }
@@ -312,10 +301,8 @@ TEST(tower_with_rigid_blades_swings_as_by_ritz) {
 // Gravity falls upon an undeformed tower: 20 ms are coarse for its first axial swings, in which the
 // interface makes more than a hundredth of what it has exchanged by then, but for nothing after.
 TEST(jolt_at_the_start_does_not_end_a_run) {
-    static const char *const sets[] = {"simulation.initial=undeformed", "simulation.duration=3 s",
-                                       "bodies[3-5].fidelity=rigid", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, parked, sets);
+    check_build_with(arena, s, parked, "simulation.initial=undeformed", "simulation.duration=3 s",
+                     "bodies[3-5].fidelity=rigid");
     run(s);
     // weight of the head and of the tapered tower on its axial stiffness
     check_near(tip_of(s).z - 87.6, -4.4e-3, 0.05, 0);

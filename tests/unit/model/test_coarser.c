@@ -23,8 +23,7 @@ static coarser coarser_of(bough_arena *arena, const char *path, const char *firs
 // What is equal has been discretised before.
 TEST(another_run_takes_the_meshes_that_are_equal) {
     check_arena(arena);
-    static const char *const none[] = {NULL};
-    const bough_simulation *run = scene_build(arena, runup, none);
+    const bough_simulation *run = scene_build(arena, runup, no_sets);
     bough_other_run finer, coarse;
     check_ok(bough_other_run_build(arena, run, BOUGH_FINEST_TIME, &finer));
     check_ok(bough_other_run_build(arena, run, BOUGH_COARSER_ALL, &coarse));

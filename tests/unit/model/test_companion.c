@@ -21,9 +21,7 @@ typedef struct outcome {
 
 static outcome *run_for(const char *path, int steps, const char *const *sets) {
     outcome *o = calloc(1, sizeof *o);
-    check_arena(arena);
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, path, sets), &r));
+    check_run(arena, r, path, sets);
     assert_true(r.channels.count <= MOST);
     o->n = r.channels.count;
     for (int i = 0; i < o->n; i++) strcpy(o->name[i], r.channels.channel[i].name);
@@ -55,10 +53,9 @@ static double true_error(const outcome *o, const outcome *truth, int channel, in
 }
 
 // A run to its end.
-static void run_all(bough_arena *arena, const char *scene, const char *const *sets, bough_run *r) {
-    check_ok(bough_run_create(arena, scene_read(arena, scene, sets), r));
-    while (!bough_run_done(r)) check_ok(bough_run_step(r));
-}
+#define check_ended_run(arena, r, scene, sets)                                                               \
+    check_run(arena, r, scene, sets);                                                                        \
+    while (!bough_run_done(&r)) check_ok(bough_run_step(&r))
 
 static bough_error_shares find_shares(bough_arena *arena, bough_run *r) {
     bough_error_shares shares;
@@ -129,9 +126,7 @@ TEST(the_whole_error_is_estimated) {
 TEST(a_companion_that_loses_the_solution_is_replaced) {
     const char *const sets[] = {"simulation.duration=20 s", "simulation.output.from=8 s",
                                 "simulation.error_estimate=companion", "bodies[3-5].rod.segments=12", NULL};
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "apps/turbine/land-operation.yaml", sets, &r);
+    check_ended_run(arena, r, "apps/turbine/land-operation.yaml", sets);
     int twist = bough_channels_find(&r.channels, "TwstDefl1");
     assert_true(bough_error_relative(r.companion, twist, r.companion->error[twist]) > 0.5);
     find_shares(arena, &r);
@@ -144,9 +139,7 @@ TEST(a_companion_that_loses_the_solution_is_replaced) {
 TEST(rigid_bodies_that_lose_the_solution_have_its_error) {
     const char *const sets[] = {"simulation.duration=30 s",
                                 "simulation.master={solver: rosenbrock, rtol: 1e-3}", NULL};
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "apps/mechanisms/double-pendulum.yaml", sets, &r);
+    check_ended_run(arena, r, "apps/mechanisms/double-pendulum.yaml", sets);
     int x = bough_channels_find(&r.channels, "bob1X");
     assert_true(bough_error_relative(r.companion, x, r.companion->error[x]) > 0.3);
     find_shares(arena, &r);
@@ -157,9 +150,7 @@ TEST(rigid_bodies_that_lose_the_solution_have_its_error) {
 TEST(the_last_half_step_has_shares) {
     const char *const sets[] = {"simulation.coupling.scheme=frozen", "bodies[arm].rod.segments=10",
                                 "loads[0].factor={times: [0.795, 0.7951], values: [0, 1]}", NULL};
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "tests/data/scenes/small-vibration.yaml", sets, &r);
+    check_ended_run(arena, r, "tests/data/scenes/small-vibration.yaml", sets);
     int tip = bough_channels_find(&r.channels, "armTipX");
     double error = r.companion->error[tip];
     assert_true(error > 0);
@@ -216,9 +207,7 @@ TEST(a_burst_of_corners_splits_no_steps) {
         "loads=[{joint: bob, torque: {times: [0.1, 0.1001, 0.1002, 0.1003, 0.1004, 0.1005, "
         "0.1006, 0.1007, 0.1008], values: [0, 1e-9, 0, 1e-9, 0, 1e-9, 0, 1e-9, 0]}}]",
         NULL};
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "apps/mechanisms/pendulum.yaml", sets, &r);
+    check_ended_run(arena, r, "apps/mechanisms/pendulum.yaml", sets);
     assert_false(r.companion->coarser.simulation->master->split);
 }
 
@@ -294,9 +283,7 @@ TEST(a_finer_solution_joins_the_run) {
     const char *const sets[] = {
         "simulation.duration=0.6 s",
         "loads=[{joint: hub, torque: {times: [0, 0.405, 0.406], values: [0, -1e4, -3e4]}}]", NULL};
-    check_arena(arena);
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, example, sets), &r));
+    check_run(arena, r, example, sets);
     const bough_finer *f = &r.companion->finer;
     const bough_master *m = r.simulation->master;
     int joined = 0, tip = bough_channels_find(&r.channels, "TipDxb1");
@@ -318,8 +305,7 @@ TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
     check_arena(arena);
     bough_run r;
     double error[3], estimate[3];
-    run_beside(arena, "tests/data/scenes/struck-bar.yaml", (const char *const[]){NULL}, truth, 0, &r, channel,
-               error, estimate);
+    run_beside(arena, "tests/data/scenes/struck-bar.yaml", no_sets, truth, 0, &r, channel, error, estimate);
     assert_int_equal(r.companion->coarser.simulation->beam[0].def.n_segment, 20);
     for (int w = 0; channel[w]; w++)
         assert_true(estimate[w] > 0.7 * error[w] && estimate[w] < 1.5 * error[w]);
@@ -331,9 +317,7 @@ TEST(loose_sub_solvers_have_a_finer_solution) {
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {"simulation.coupling={scheme: frozen}", "simulation.master={rtol: 1e-6}",
                                     micro[k], NULL};
-        check_arena(arena);
-        bough_run r;
-        check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/mid-weight.yaml", sets), &r));
+        check_run(arena, r, "tests/data/scenes/mid-weight.yaml", sets);
         assert_int_equal(r.companion->finer.other.simulation != NULL, k == 0);
     }
 }
@@ -341,9 +325,7 @@ TEST(loose_sub_solvers_have_a_finer_solution) {
 // Stiff rods without damping: followed by its tolerance, the finer solution would take forty times the work
 // of the run.
 TEST(the_finer_solution_takes_little_work) {
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "tests/data/scenes/mid-weight.yaml", (const char *const[]){NULL}, &r);
+    check_ended_run(arena, r, "tests/data/scenes/mid-weight.yaml", no_sets);
     double finer = r.companion->finer.work, both = bough_companion_work(r.companion);
     print_message("work: %.2g, of run and companion %.2g\n", finer, both);
     assert_true(finer > 0 && finer < both);
@@ -357,9 +339,7 @@ TEST(finer_steps_prove_an_error_in_time) {
                                 "simulation.error_bound=1e-6",
                                 "simulation.master={solver: rosenbrock, rtol: 4e-3}", NULL};
     outcome *truth = run_for(scene, STEPS, truth_sets), *o = run_for(scene, STEPS, sets);
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, scene, sets, &r);
+    check_ended_run(arena, r, scene, sets);
     bough_error_shares shares = find_shares(arena, &r);
     for (int i = 0; i < 2; i++) {
         double error = true_error(o, truth, i, STEPS), proved = r.companion->error[i];
@@ -382,10 +362,8 @@ static bool count_steps(void) {
 
 // Five segments: the search needs a part of one further run, whose rest stays small.
 TEST(a_mesh_far_beyond_the_bound_is_proved_early) {
-    check_arena(arena);
-    bough_run r;
+    check_ended_run(arena, r, "tests/data/scenes/tumbling.yaml", no_sets);
     bough_error_shares shares;
-    run_all(arena, "tests/data/scenes/tumbling.yaml", (const char *const[]){NULL}, &r);
     asked = 0;
     check_ok(bough_error_shares_find(arena, r.companion, count_steps, &shares));
     double mesh = bough_error_verdict_of(r.companion, true, shares.share[BOUGH_SHARE_MESH].largest).relative;
@@ -434,9 +412,7 @@ TEST(a_proof_bounds_the_other_parts) {
     static const char *const sets[] = {"simulation.duration=12 s", "bodies[blade1].fidelity=modal",
                                        "bodies[blade2].fidelity=modal", "bodies[blade3].fidelity=modal",
                                        NULL};
-    check_arena(arena);
-    bough_run r;
-    run_all(arena, "apps/turbine/land.yaml", sets, &r);
+    check_ended_run(arena, r, "apps/turbine/land.yaml", sets);
     bough_error_shares shares = find_shares(arena, &r);
     int twist = bough_channels_find(&r.channels, "TwstDefl1");
     double sum = 0, whole = r.companion->error[twist];
@@ -560,10 +536,7 @@ TEST(every_channel_has_an_error) {
 
 // What the mesh changes before the first step is an error, too: here of the forces of the air.
 TEST(the_start_is_compared) {
-    static const char *const none[] = {NULL};
-    check_arena(arena);
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, example, none), &r));
+    check_run(arena, r, example, no_sets);
     double most = 0;
     for (int i = 0; i < r.channels.count; i++) most = fmax(most, r.companion->error[i]);
     assert_true(most > 0);
@@ -660,9 +633,7 @@ TEST(beside_a_finer_mesh_held_loads_are_sampled_in_shorter_steps) {
         "aero.wind={kind: uniform, table: {times: [0, 1.02], speeds: [6, 12]}}",
         "loads=[{joint: hub, torque: 1, ramp: [0.113 s, 0.113 s]}]",
         NULL};
-    check_arena(arena);
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/turbine/runup-stages.yaml", sets), &r));
+    check_run(arena, r, "apps/turbine/runup-stages.yaml", sets);
     const bough_companion *c = r.companion;
     check_near(c->coarser.simulation->scene->aero.rate, 100, 1e-12, 0);
     for (int k = 1; k <= 11; k++) {

@@ -65,9 +65,7 @@ TEST(hub_drag_blows_downwind) {
 
 // The run goes on with drag, and samples repeat from the saved row.
 TEST(drag_runs_and_repeats) {
-    static const char *const sets[] = {FEW, DRAG, "aero.hub_drag_area=7", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, turbine, sets);
+    check_build_with(arena, s, turbine, FEW, DRAG, "aero.hub_drag_area=7");
     while (s->master->time < 0.5 - 1e-9) scene_step(s);
     bough_sampled_load load = s->sampled[1];
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};

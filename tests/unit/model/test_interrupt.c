@@ -10,8 +10,7 @@ static bool stop(void) { return evaluations-- <= 0; }
 // The request comes after `left` evaluations of the fourth step.
 static void stop_within(const char *scheme, long left) {
     const char *const sets[] = {scheme, "simulation.macro_step=2 ms", "simulation.duration=200 ms", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/arms.yaml", sets);
+    check_build(arena, s, "tests/data/scenes/arms.yaml", sets);
     bough_channels channels = bough_channels_start(arena);
     double before[MOST], after[MOST];
     bough_simulation_channels(s, &channels);

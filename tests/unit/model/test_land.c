@@ -7,9 +7,7 @@ static double (*record(const char *speed, int *n))[MOST] {
     static double rows[2][ROWS][MOST];
     static int turn;
     double(*to)[MOST] = rows[turn++ % 2];
-    const char *const sets[] = {"simulation.duration=10 s", speed, NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/turbine/land.yaml", sets);
+    check_build_with(arena, s, "apps/turbine/land.yaml", "simulation.duration=10 s", speed);
     bough_channels list = scene_channels(arena, s);
     assert_true(list.count <= MOST);
     *n = list.count;

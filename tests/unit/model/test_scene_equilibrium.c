@@ -40,9 +40,7 @@ static double joint_angle(const bough_simulation *s, int body) {
 
 // A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.
 TEST(spring_holds_the_pendulum) {
-    const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    check_build_with(arena, s, "apps/mechanisms/pendulum.yaml", "bodies[0].joint.stiffness=20");
     equilibrium_of(s);
     double angle = joint_angle(s, 0);
     assert_true(angle < -0.1);
@@ -51,9 +49,7 @@ TEST(spring_holds_the_pendulum) {
 
 // Started above the hinge: it falls and hangs.
 TEST(chain_hangs) {
-    const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
+    check_build_with(arena, s, "apps/mechanisms/chain.yaml", "bodies[0].joint.angle=-45 deg");
     equilibrium_of(s);
     check_near(sin(joint_angle(s, 0)), 1, 0, 1e-9);
     for (int body = 1; body < 5; body++) {
@@ -93,11 +89,9 @@ TEST(dead_line_load_bends_the_rod_at_fourth_order) {
     double exact[3], error[2];
     shoot(20, exact);
     for (int k = 0; k < 2; k++) {
-        const char *sets[] = {k == 0 ? "bodies[0].rod.segments=16" : "bodies[0].rod.segments=32",
-                              "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]",
-                              NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
+        check_build_with(arena, s, "apps/beams/elastica.yaml",
+                         k == 0 ? "bodies[0].rod.segments=16" : "bodies[0].rod.segments=32",
+                         "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]");
         equilibrium_of(s);
         bough_quaternion p;
         bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &p);
@@ -117,9 +111,7 @@ TEST(massless_tip_bends_the_elastica) {
         double deflection;
     } cases[] = {{"loads[0].force=[1, 0, 0]", 0.30172}, {"loads[0].force=[10, 0, 0]", 0.81061}};
     for (int k = 0; k < 2; k++) {
-        const char *sets[] = {cases[k].force, NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "tests/data/scenes/elastica-tip.yaml", sets);
+        check_build_with(arena, s, "tests/data/scenes/elastica-tip.yaml", cases[k].force);
         bough_equilibrium_work work = equilibrium_of(s);
         assert_in_range(work.steps, 1, 30);
         bough_quaternion p;
@@ -129,9 +121,7 @@ TEST(massless_tip_bends_the_elastica) {
 
 // x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
 TEST(turning_bar_stretches) {
-    const char *sets[] = {"bodies[1].joint.motion={speed: 20 rad/s}", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
+    check_build_with(arena, s, "apps/beams/spin-up.yaml", "bodies[1].joint.motion={speed: 20 rad/s}");
     equilibrium_of(s);
     double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
     int n = s->beam[0].def.n_segment;
@@ -144,8 +134,7 @@ TEST(turning_bar_stretches) {
 // The rod's own solution, by Newton's method with increments of load.
 TEST(rod_alone_stands_where_its_own_statics_says) {
     const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/blade.yaml", sets);
+    check_build(arena, s, "tests/data/scenes/blade.yaml", sets);
     bough_turning rest = {0};
     bough_steady steady;
     check_ok(bough_steady_find(arena, s, &s->beam[0], &rest, &steady));
@@ -165,8 +154,7 @@ TEST(parked_turbine_stays_at_rest) {
                           "aero.ramp=[0, 0]",
                           "bodies[3-5].rod.segments=24",
                           NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, runup, sets);
+    check_build(arena, s, runup, sets);
     size_t bytes = (size_t)s->rod[0].system.n_state * sizeof(double);
     double *before = bough_arena_take(arena, 3 * bytes);
     for (int k = 0; k < 3; k++) memcpy(before + k * s->rod[0].system.n_state, s->rod[k].state, bytes);
@@ -183,8 +171,7 @@ TEST(parked_turbine_stays_at_rest) {
 // With tower, yaw drive and drive train.
 TEST(turbine_on_its_tower_stays_at_rest) {
     const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4-6].rod.segments=8", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
+    check_build(arena, s, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;
     double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
     bough_assembly_states(s->master->assembly, before);
@@ -207,8 +194,7 @@ TEST(turning_rotor_starts_smoothly) {
                                 "gravity=[0, 0, 0]",    NULL};
     double moved[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, runup, k == 0 ? sets : undeformed);
+        check_build(arena, s, runup, k == 0 ? sets : undeformed);
         int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
         double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
         for (int step = 0; step < 25; step++) {
@@ -221,9 +207,7 @@ TEST(turning_rotor_starts_smoothly) {
 }
 
 TEST(driven_free_rotor_has_none) {
-    const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, runup, sets);
+    check_build_with(arena, s, runup, "bodies[2].joint.speed=0", "aero.ramp=[0, 0]");
     bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
@@ -236,8 +220,7 @@ TEST(wheel_on_a_pad_has_none) {
         "ground, axis: z}}]",
         "bushings=[{name: pad, from: wheel, to: ground, rotational_stiffness: [10, 10, 10]}]",
         "loads=[{joint: wheel, torque: 1000}]", "markers=[]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    check_build(arena, s, "apps/mechanisms/pendulum.yaml", sets);
     bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "no equilibrium");
     assert_null(strstr(status.message, "nothing but loads"));
@@ -254,8 +237,7 @@ TEST(chain_hangs_in_a_catenary) {
         const char *sets[] = {set, NULL};
         const char *b = bending[k];
         snprintf(set, sizeof set, "bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, %s, %s, %s]", b, b, b);
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
+        check_build(arena, s, "tests/data/scenes/mooring.yaml", sets);
         int steps = steps_to_any(s);
         bough_channels list = scene_channels(arena, s);
         printf("EI %s N m2: %d steps\n", b, steps);
@@ -270,8 +252,7 @@ TEST(twist_of_long_segments_is_not_called_unstable) {
     char more[60] = "bodies[1].rod.segments=48";
     const char *sets[] = {"bodies[1].rod.stiffness=[1.2e9, 1.2e9, 3.2e9, 1e4, 1e4, 1e4]", more, NULL};
     for (int k = 0; k < 2; k++) {
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "tests/data/scenes/mooring.yaml", sets);
+        check_build(arena, s, "tests/data/scenes/mooring.yaml", sets);
         check_ok(seek(s));
         bough_growth growth = growth_of(s);
         check_near(growth.rate, 0, 0, 0);
@@ -319,9 +300,7 @@ TEST(cable_on_a_spherical_joint_hangs_under_forces) {
 // Heavy bodies on a light rod that bends far fall and come to rest in a stable equilibrium: where each step
 // starts at rest, 1000 do not suffice.
 TEST(heavy_bodies_fall_from_a_light_rod) {
-    static const char *const none[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/slender-tree.yaml", none);
+    check_build(arena, s, "tests/data/scenes/slender-tree.yaml", no_sets);
     printf("%d steps\n", equilibrium_of(s).steps);
     bough_growth growth = growth_of(s);
     check_near(growth.rate, 0, 0, 0);
@@ -334,8 +313,7 @@ TEST(segments_too_long_for_a_bend_are_named) {
         "bodies=[{name: whip, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1, segments: "
         "4, stiffness: [1e3, 1e3, 1e3, 1e-3, 1e-3, 1e-3], mass: [0.01, 0, 0, 1e-6, 1e-6, 0]}}]",
         "loads=[{body: whip, at: tip, force: [0.1, 0, -1]}]", "gravity=[0, 0, 0]", "markers=[]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    check_build(arena, s, "apps/mechanisms/pendulum.yaml", sets);
     bough_status status = seek(s);
     check_fails(status, BOUGH_FAILED, "whip: no equilibrium found: its segments are too long for its load");
     int times = 0;
@@ -393,9 +371,7 @@ TEST(light_bar_on_pads_is_stable) {
 TEST(standing_pendulum_is_unstable) {
     static const char *const angle[] = {"bodies[0].joint.angle=90 deg", "bodies[0].joint.angle=-90 deg"};
     for (int k = 0; k < 2; k++) {
-        const char *sets[] = {angle[k], NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+        check_build_with(arena, s, "apps/mechanisms/pendulum.yaml", angle[k]);
         equilibrium_of(s);
         bough_growth growth = growth_of(s);
         check_near(growth.rate, k == 0 ? sqrt(9.81) : 0, 0, 1e-6);
@@ -407,9 +383,7 @@ TEST(standing_pendulum_is_unstable) {
 TEST(follower_force_makes_a_column_flutter) {
     static const char *const force[] = {"loads[0].force=[0, 0, -22]", "loads[0].force=[0, 0, -19]"};
     for (int k = 0; k < 2; k++) {
-        const char *sets[] = {force[k], "bodies[0].rod.segments=20", NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, "apps/beams/beck.yaml", sets);
+        check_build_with(arena, s, "apps/beams/beck.yaml", force[k], "bodies[0].rod.segments=20");
         equilibrium_of(s);
         bough_growth growth = growth_of(s);
         check_near(growth.oscillation, k == 0 ? 3.05491 : 0, 5e-3, 1e-6);
@@ -524,8 +498,7 @@ TEST(net_without_stiffness_is_found) {
         "springs=[{name: r, from: ground, to: a, stiffness: 1e4, length: 1}, {name: s, from: a, to: b, stiffness: "
         "1e4, length: 1}, {name: t, from: b, to: ground, to_point: [3, 0, 0], stiffness: 1e4, length: 1}]",
         "gravity=[0, 0, 0]", "markers=[{name: a, body: a}, {name: b, body: b}]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    check_build(arena, s, "apps/mechanisms/pendulum.yaml", sets);
     int steps = equilibrium_of(s).steps;
     printf("%d steps\n", steps);
     assert_in_range(steps, 1, 300);
@@ -537,10 +510,9 @@ TEST(net_without_stiffness_is_found) {
 // Four times the segments start in the shape of the chain found, and its joint where it is: far fewer steps
 // lead to the equilibrium than from the undeformed chain.
 TEST(finer_mesh_starts_in_the_shape_found) {
-    static const char *const none[] = {NULL};
     const char *finer[] = {"bodies[1].rod.segments=192", NULL};
     check_arena(arena);
-    bough_simulation *coarse = scene_build(arena, "tests/data/scenes/mooring.yaml", none);
+    bough_simulation *coarse = scene_build(arena, "tests/data/scenes/mooring.yaml", no_sets);
     bough_simulation *fine = scene_build(arena, "tests/data/scenes/mooring.yaml", finer);
     bough_equilibrium_work work;
     int first = equilibrium_of(coarse).steps;
@@ -580,7 +552,6 @@ TEST(bodies_tied_only_to_each_other_have_none) {
 // Eight rigid links, 4 m between their hinges, hang in a discrete catenary: the tangent of link k's angle is
 // (k − ½)/H.
 TEST(chain_of_rigid_links_hangs) {
-    static const char *const none[] = {NULL};
     double low = 0.1, high = 10, middle = 0;
     for (int i = 0; i < 100; i++) {
         double h = (low + high) / 2, reach = middle = 0;
@@ -590,8 +561,7 @@ TEST(chain_of_rigid_links_hangs) {
         }
         *(reach < 2 ? &low : &high) = h;
     }
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/link-chain.yaml", none);
+    check_build(arena, s, "tests/data/scenes/link-chain.yaml", no_sets);
     assert_in_range(equilibrium_of(s).steps, 1, 300);
     bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "middleX"), 2, 0, 1e-6);

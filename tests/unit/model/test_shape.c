@@ -6,8 +6,7 @@
 // A bent rod under a force at its tip: every section carries the force and its moment about the section.
 TEST(tip_force_passes_all_sections) {
     const char *sets[] = {"loads[0].force=[10, 0, 0]", "bodies[0].joint.placement=[rotate x 30 deg]", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
+    check_build(arena, s, "apps/beams/elastica.yaml", sets);
     double t = bough_equilibrium_time(s);
     check_ok(bough_simulation_equilibrium(s, s->master->assembly, t, 0, NULL));
     bough_simulation_update(s);
@@ -36,8 +35,7 @@ TEST(tip_force_passes_all_sections) {
 // A rigid body has no sections.
 TEST(rigid_bodies_carry_no_section_loads) {
     const char *sets[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    check_build(arena, s, "apps/mechanisms/pendulum.yaml", sets);
     bough_shape shape;
     bough_shape_create(arena, s, &shape);
     double force[9], moment[9] = {1};

@@ -142,9 +142,7 @@ TEST(defects_of_the_model_are_reported_at_the_start) {
          "beam at 0 s: a rod of one segment bends by a third too little"},
     };
     for (int i = 0; i < 4; i++) {
-        const char *const sets[] = {model[i].set, NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, model[i].scene, sets);
+        check_build_with(arena, s, model[i].scene, model[i].set);
         char text[400];
         assert_int_equal(passed(s), 1 << model[i].limit);
         check_near(s->validity->limit[model[i].limit].value, model[i].value, 1e-6, 0);

@@ -36,8 +36,7 @@ static void each(void (*check)(const method *m)) {
     }
 }
 
-// -- the problem
-// ---------------------------------------------------------------------------------------------
+// -- the problem ----------------------------------------------------------------------------------
 
 enum { N = 3 };
 
@@ -172,8 +171,7 @@ static double error_at(const double *y, double t) {
     return largest;
 }
 
-// -- accuracy
-// ------------------------------------------------------------------------------------------------
+// -- accuracy -------------------------------------------------------------------------------------
 
 static double error_with(const method *m, double rtol) {
     double y[N];
@@ -208,8 +206,7 @@ static void scale_the_tolerance(const method *m) {
 
 TEST(tolerance_is_relative_to_the_scale) { each(scale_the_tolerance); }
 
-// -- calls
-// ---------------------------------------------------------------------------------------------------
+// -- calls ----------------------------------------------------------------------------------------
 
 // f has no value beyond the end, and the end is reached though no natural step ends there.
 static void stop_at_the_end(const method *m) {
@@ -268,8 +265,7 @@ static void start_elsewhere(const method *m) {
 
 TEST(restart_takes_up_a_changed_state) { each(start_elsewhere); }
 
-// -- failures
-// ------------------------------------------------------------------------------------------------
+// -- failures -------------------------------------------------------------------------------------
 
 // A rate that has no value shortens the step.
 static void refuse_some_rates(const method *m) {
@@ -319,8 +315,7 @@ static void fail_in_four_ways(const method *m) {
 
 TEST(failure_names_body_time_and_method) { each(fail_in_four_ways); }
 
-// -- statistics
-// ----------------------------------------------------------------------------------------------
+// -- statistics -----------------------------------------------------------------------------------
 
 static void count_over_restarts(const method *m) {
     double y[N];

@@ -216,9 +216,7 @@ TEST(wrench_in_ground_axes_pushes_straight) {
 // A machine on its mounts, turned against the ground, sinks by m g/k; a second body is lifted by
 // exactly its weight; a wheel is spun up by a force that turns with it.
 TEST(scenes_mount_and_load_bodies) {
-    static const char *const none[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/mounts.yaml", none);
+    check_build(arena, s, "tests/data/scenes/mounts.yaml", no_sets);
     bough_channels list = scene_channels(arena, s);
     check_near(scene_channel(s, &list, "mountFrcX"), 0, 0, 1e-12);
     assert_int_equal(s->master->n_event, 2);

@@ -11,8 +11,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char *const no_sets[] = {NULL};
-
 static void run(built *f, int steps) {
     for (int k = 0; k < steps; k++) scene_step(f->s);
 }

@@ -227,9 +227,7 @@ TEST(locked_joint_reports_its_torque) {
 // -- scenes ----------------------------------------------------------------------------------
 
 TEST(scenes_drive_joints) {
-    static const char *const none[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/motion.yaml", none);
+    check_build(arena, s, "tests/data/scenes/motion.yaml", no_sets);
     bough_channels list = scene_channels(arena, s);
     assert_int_equal(s->master->n_event, 2 + 3 + 2 + 2 - 1); // two begin at 0
     check_near(s->master->event[2], 0.105, 1e-15, 0);

@@ -33,8 +33,7 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
     snprintf(sets[1], sizeof sets[1], "simulation.master.solver=%s", solver);
     snprintf(sets[2], sizeof sets[2], "simulation.master.rtol=%s", rtol);
     const char *const list[] = {sets[0], sets[1], sets[2], NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, scene, list);
+    check_build(arena, s, scene, list);
     const bough_motion *ramped = s->tree->links[RAMPED].motion;
     const bough_motion *table = s->tree->links[STEERED].motion;
     for (long k = 1; !bough_master_done(s->master); k++) {

@@ -46,8 +46,7 @@ static double bar_limit(void) {
 // Each point is on the exact curve; the limit points are the curve's; the driver turns back on its way.
 TEST(slides_snap_through_and_back) {
     const char *sets[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
+    check_build(arena, s, "tests/data/scenes/snapping-slide.yaml", sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_ok(walk(s, t, &report));
@@ -100,9 +99,7 @@ TEST(closures_carry_the_load_of_the_point) {
 
 // A load below the limit has no limit point.
 TEST(short_of_the_limit) {
-    const char *sets[] = {"loads[0].force=-4.9", NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "tests/data/scenes/snapping-slide.yaml", sets);
+    check_build_with(arena, s, "tests/data/scenes/snapping-slide.yaml", "loads[0].force=-4.9");
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_ok(walk(s, t, &report));
@@ -112,8 +109,7 @@ TEST(short_of_the_limit) {
 
 TEST(lee_frame) {
     const char *sets[] = {NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, "apps/beams/lee-frame.yaml", sets);
+    check_build(arena, s, "apps/beams/lee-frame.yaml", sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_ok(walk(s, t, &report));
@@ -124,9 +120,7 @@ TEST(lee_frame) {
 }
 
 static void refuses(const char *scene, const char *set, const char *why) {
-    const char *sets[] = {set, NULL};
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, scene, sets);
+    check_build_with(arena, s, scene, set);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_fails(walk(s, t, &report), BOUGH_INVALID, why);

@@ -33,8 +33,7 @@ TEST(load_keeps_its_direction_while_the_arm_turns) {
             "bodies[0].rod.stiffness=[1e9, 1e9, 1e9, 1e7, 1e7, 1e7]",
             "loads[0]={body: arm, at: tip, force: [3, -2, -5], moment: [0.5, 2, -1]}",
             NULL};
-        check_arena(arena);
-        bough_simulation *s = scene_build(arena, scene, sets);
+        check_build(arena, s, scene, sets);
         run_to_end(s);
         const bough_beam *arm = &s->beam[0];
         bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[arm->marker]).rotation;
@@ -50,8 +49,7 @@ TEST(load_keeps_its_direction_while_the_arm_turns) {
 // -- gravity --------------------------------------------------------------------------------------
 
 static bough_vec3 tip_after(const char *const *sets) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, scene, sets);
+    check_build(arena, s, scene, sets);
     run_to_end(s);
     bough_quaternion rotation;
     bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &rotation);
@@ -116,8 +114,7 @@ TEST(load_between_vertices_bends_a_rod_on_a_joint_as_one_on_the_ground) {
 // -- the contract ---------------------------------------------------------------------------------
 
 static void check_contract(const char *const *sets) {
-    check_arena(arena);
-    bough_simulation *s = scene_build(arena, scene, sets);
+    check_build(arena, s, scene, sets);
     for (int k = 0; k < 20; k++) scene_step(s);
     const bough_system *rod = &s->rod[0].system;
     contract_point at = {s->master->time, s->rod[0].state, bough_simulation_rod_input(s, &s->beam[0]), 5e-5};
