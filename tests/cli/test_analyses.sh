@@ -35,7 +35,7 @@ EOF
     [ "$(wc -l <../sensed)" -eq 37 ] || fail "$said: 36 channels and the time"
     near ../sensed '^barSpn1MLy ' 2 0.0199907 1e-6 # 10 N times 2 m, less 7 N times the deflection
     near ../sensed '^barSpn2MLy ' 2 0.0139918 1e-6
-    near ../sensed '^barSpn3MLy ' 2 0 1e-9
+    near ../sensed '^barSpn3MLy ' 2 0 1e-8
     near ../sensed '^barSpn1FLx ' 2 0.01 1e-9
     near ../sensed '^barSpn2FLz ' 2 0.0070051 1e-7 # turned with the section by 0.029 deg
     near ../sensed '^barSpn3TDx ' 2 0.0013328 1e-6 # F L^3 / 3 EI

@@ -65,52 +65,106 @@ static double segment_length(const sensor *x, int i) {
     return x->beam->def.span[i + 1] - x->beam->def.span[i];
 }
 
-// Force in the middle of a segment.
-static bough_vec3 middle_force(const sensor *x, int i) {
-    return bough_section_in_segment(x->beam, &x->scratch, i, 0.5).force;
+static bough_section_load middle_load(const sensor *x, int i) {
+    return bough_section_in_segment(x->beam, &x->scratch, i, 0.5);
 }
 
-// Change of the force per length from the middle of a segment towards a side, -1 or 1: to the middle of the
-// neighbour or to the end of the rod.
-static bough_vec3 force_slope(const sensor *x, const end_loads *ends, int i, int side) {
-    int next = i + side, n = x->beam->def.n_segment;
+// From the middle of a segment to the next place at which the loads are known, the middle of a neighbour or
+// an end of the rod.
+typedef struct neighbour {
+    bool known, inner;        // no concentrated force lies between both; it is a segment
+    double distance;          // [m], negative towards the root
+    bough_section_load slope; // change per length
+} neighbour;
+
+static neighbour neighbour_of(const sensor *x, const end_loads *ends, int i, int sign) {
+    int next = i + sign, n = x->beam->def.n_segment;
+    bool inner = next >= 0 && next < n;
+    bough_section_load from = middle_load(x, i), to = {{0, 0, 0}, {0, 0, 0}};
     double length = segment_length(x, i) / 2;
-    bough_vec3 to = {0, 0, 0};
-    if (next >= 0 && next < n) {
-        to = middle_force(x, next);
+    if (inner) {
+        to = middle_load(x, next);
         length += segment_length(x, next) / 2;
     } else if (next < 0) {
-        to = ends->root.force;
+        to = ends->root;
     } else if (x->beam->end >= 0) {
-        to = ends->end.force;
+        to = ends->end;
     }
-    return bough_scale(1 / length, bough_sub(to, middle_force(x, i)));
+    bough_vec3 force = bough_sub(to.force, from.force), moment = bough_sub(to.moment, from.moment);
+    bough_section_load slope = {bough_scale(sign / length, force), bough_scale(sign / length, moment)};
+    return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
 }
 
-// The force varies linearly between the middles of segments. A concentrated force makes a step at its vertex:
-// towards it the slope of the segment's other half continues.
-static bough_vec3 force_at(const sensor *x, const end_loads *ends, place at) {
-    int side = at.fraction < 0.5 ? -1 : 1;
+// The parabola through the middles of three segments, a line next to an end. A concentrated force makes a
+// step at its vertex: towards it the slope of the segment's other half continues.
+static bough_section_load load_between(const sensor *x, const end_loads *ends, place at) {
     double offset = (at.fraction - 0.5) * segment_length(x, at.segment);
-    const bool *kink = x->kink + at.segment; // of the segment's two vertices
-    bough_vec3 slope = {0, 0, 0};
-    if (!kink[side > 0])
-        slope = bough_scale(side, force_slope(x, ends, at.segment, side));
-    else if (!kink[side < 0])
-        slope = bough_scale(-side, force_slope(x, ends, at.segment, -side));
-    return bough_axpy(offset, slope, middle_force(x, at.segment));
+    bough_section_load middle = middle_load(x, at.segment);
+    neighbour a = neighbour_of(x, ends, at.segment, -1), b = neighbour_of(x, ends, at.segment, 1);
+    bool left = offset < 0 ? a.known : !b.known;
+    double weight = left ? 0 : 1; // of b's slope
+    if (a.known && b.known && a.inner && b.inner)
+        weight = (offset - a.distance) / (b.distance - a.distance);
+    else if (!a.known && !b.known)
+        return middle;
+    bough_vec3 force = bough_between(a.slope.force, b.slope.force, weight);
+    bough_vec3 moment = bough_between(a.slope.moment, b.slope.moment, weight);
+    return (bough_section_load){bough_axpy(offset, force, middle.force),
+                                bough_axpy(offset, moment, middle.moment)};
 }
 
-// The moment of the segment; from the middle of the first and the last segment it changes linearly to that of
-// the root and of an end that carries bodies.
-static bough_vec3 moment_at(const sensor *x, const end_loads *ends, place at) {
+// Change of the moment per length within a segment.
+static bough_vec3 moment_slope(const sensor *x, int i) {
+    bough_vec3 first = bough_section_in_segment(x->beam, &x->scratch, i, 0).moment;
+    bough_vec3 last = bough_section_in_segment(x->beam, &x->scratch, i, 1).moment;
+    return bough_scale(1 / segment_length(x, i), bough_sub(last, first));
+}
+
+// Second derivative of the moment: the mean over the neighbours that no concentrated force separates.
+static bough_vec3 moment_curvature(const sensor *x, int i) {
+    bough_vec3 sum = {0, 0, 0};
+    int count = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        int next = i + side;
+        if (next < 0 || next >= x->beam->def.n_segment || x->kink[i + (side > 0)]) continue;
+        double distance = (segment_length(x, i) + segment_length(x, next)) / 2;
+        bough_vec3 change = bough_sub(moment_slope(x, next), moment_slope(x, i));
+        sum = bough_axpy(side / distance, change, sum);
+        count++;
+    }
+    return count > 1 ? bough_scale(0.5, sum) : sum;
+}
+
+// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
+// it.
+static bough_vec3 bow_of_loads(const sensor *x, int i) {
+    const bough_rod_model *m = x->beam->mesh;
+    double stiffness[6][6], moment[3] = {0, 0, 0};
+    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
+    for (int k = 0; k < 6; k++) {
+        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
+        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
+    }
+    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
+    return bough_mat3_mul(axes, bough_v3_load(moment));
+}
+
+// theory (117): a parabola of known mean over the segment. In the outer half of the first and the last
+// segment it ends at the moment of the root and of the end.
+static bough_vec3 bending_at(const sensor *x, const end_loads *ends, place at) {
     const bough_beam *beam = x->beam;
-    bough_vec3 middle = bough_section_in_segment(beam, &x->scratch, at.segment, 0.5).moment;
-    if (at.segment == 0 && at.fraction < 0.5)
-        return bough_between(ends->root.moment, middle, 2 * at.fraction);
-    if (at.segment == beam->def.n_segment - 1 && at.fraction > 0.5 && beam->end >= 0)
-        return bough_between(middle, ends->end.moment, 2 * at.fraction - 1);
-    return bough_section_in_segment(beam, &x->scratch, at.segment, at.fraction).moment;
+    int i = at.segment, n = beam->def.n_segment;
+    double f = at.fraction, square = segment_length(x, i) * segment_length(x, i);
+    bough_vec3 bend = bough_scale(square / 2, moment_curvature(x, i)), mean = bow_of_loads(x, i);
+    bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
+    if (i == 0 && f < 0.5)
+        return bough_axpy(f * (f - 0.5), bend, bough_between(ends->root.moment, middle, 2 * f));
+    if (i == n - 1 && f > 0.5 && !x->kink[n]) {
+        bough_vec3 end = beam->end >= 0 ? ends->end.moment : bough_v3(0, 0, 0);
+        return bough_axpy((f - 0.5) * (f - 1), bend, bough_between(middle, end, 2 * f - 1));
+    }
+    bough_vec3 linear = bough_section_in_segment(beam, &x->scratch, i, f).moment;
+    return bough_axpy((f - 0.5) * (f - 0.5) - 1. / 12, bend, bough_add(mean, linear));
 }
 
 // Displacement of a vertex, and slope of the axis there by rotation, (R − R₀) e₃, in the body's axes.
@@ -145,8 +199,11 @@ static void sample_place(const sensor *x, const end_loads *ends, place at, doubl
     shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
     bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
     turn = bough_axpy(bow, curvature_change(x, at, &axes), turn);
-    bough_vec3 force = bough_mat3_tmul(axes, force_at(x, ends, at));
-    bough_vec3 moment = bough_mat3_tmul(axes, moment_at(x, ends, at));
+    // a segment's moment has no slope in torsion
+    bough_section_load load = load_between(x, ends, at);
+    bough_vec3 force = bough_mat3_tmul(axes, load.force);
+    bough_vec3 moment = bough_mat3_tmul(axes, bending_at(x, ends, at));
+    moment.z = bough_mat3_tmul(axes, load.moment).z;
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
     bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
 }
