@@ -95,6 +95,31 @@ static neighbour neighbour_of(const sensor *x, const end_loads *ends, int i, int
     return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
 }
 
+// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
+// it.
+static bough_vec3 bow_of_loads(const sensor *x, int i) {
+    const bough_rod_model *m = x->beam->mesh;
+    double stiffness[6][6], moment[3] = {0, 0, 0};
+    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
+    for (int k = 0; k < 6; k++) {
+        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
+        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
+    }
+    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
+    return bough_mat3_mul(axes, bough_v3_load(moment));
+}
+
+// theory (118): force in the middle of a segment less that of the segment, whose second derivative is given,
+// by the loads along it and its neighbours, whose mean bow is -(h²/12) d₃×f.
+static bough_vec3 middle_excess(const sensor *x, int i, double distance, bough_vec3 second) {
+    double h = segment_length(x, i);
+    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
+    bough_vec3 before = bough_scale(pow(segment_length(x, i - 1), -2), bow_of_loads(x, i - 1));
+    bough_vec3 after = bough_scale(pow(segment_length(x, i + 1), -2), bow_of_loads(x, i + 1));
+    bough_vec3 slope = bough_scale(12 / distance, bough_cross(axes.c3, bough_sub(after, before)));
+    return bough_scale(h * h / 24, bough_axpy(2, slope, second));
+}
+
 // The parabola through the middles of three segments, a line next to an end. A concentrated force makes a
 // step at its vertex: towards it the slope of the segment's other half continues.
 static bough_section_load load_between(const sensor *x, const end_loads *ends, place at) {
@@ -102,11 +127,14 @@ static bough_section_load load_between(const sensor *x, const end_loads *ends, p
     bough_section_load middle = middle_load(x, at.segment);
     neighbour a = neighbour_of(x, ends, at.segment, -1), b = neighbour_of(x, ends, at.segment, 1);
     bool left = offset < 0 ? a.known : !b.known;
-    double weight = left ? 0 : 1; // of b's slope
-    if (a.known && b.known && a.inner && b.inner)
-        weight = (offset - a.distance) / (b.distance - a.distance);
-    else if (!a.known && !b.known)
+    double weight = left ? 0 : 1, distance = b.distance - a.distance; // of b's slope
+    if (a.known && b.known && a.inner && b.inner) {
+        weight = (offset - a.distance) / distance;
+        bough_vec3 second = bough_scale(2 / distance, bough_sub(b.slope.force, a.slope.force));
+        middle.force = bough_add(middle.force, middle_excess(x, at.segment, distance, second));
+    } else if (!a.known && !b.known) {
         return middle;
+    }
     bough_vec3 force = bough_between(a.slope.force, b.slope.force, weight);
     bough_vec3 moment = bough_between(a.slope.moment, b.slope.moment, weight);
     return (bough_section_load){bough_axpy(offset, force, middle.force),
@@ -133,20 +161,6 @@ static bough_vec3 moment_curvature(const sensor *x, int i) {
         count++;
     }
     return count > 1 ? bough_scale(0.5, sum) : sum;
-}
-
-// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
-// it.
-static bough_vec3 bow_of_loads(const sensor *x, int i) {
-    const bough_rod_model *m = x->beam->mesh;
-    double stiffness[6][6], moment[3] = {0, 0, 0};
-    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
-    for (int k = 0; k < 6; k++) {
-        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
-        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
-    }
-    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
-    return bough_mat3_mul(axes, bough_v3_load(moment));
 }
 
 // theory (117): a parabola of known mean over the segment. In the outer half of the first and the last
