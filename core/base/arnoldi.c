@@ -131,9 +131,6 @@ double bough_arnoldi_residual(const bough_arnoldi *a, int k) {
 }
 
 void bough_arnoldi_combine(const bough_arnoldi *a, int column, int n, double *x) {
-    const double *y = a->vector + (size_t)column * (size_t)a->done;
-    for (int k = 0; k < a->done; k++) {
-        const double *v = vector_at(a, k);
-        for (int i = 0; i < n; i++) x[i] += y[k] * v[i];
-    }
+    bough_dense_product((bough_product){a->length, n, a->done, false, 1, 0}, a->basis,
+                        a->vector + (size_t)column * (size_t)a->done, x);
 }

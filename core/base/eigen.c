@@ -153,9 +153,9 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
     memset(x, 0, 2 * n * sizeof *x);
     memset(y, 0, 2 * n * sizeof *y);
     bool oscillates = s->basis.value[s->basis.done + k] != 0;
+    bough_arnoldi_combine(&s->basis, k, 1 + oscillates, x);
     for (int part = 0; part <= oscillates; part++) {
         double *own = x + (size_t)part * n;
-        bough_arnoldi_combine(&s->basis, k + part, op->length, own);
         for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
         memcpy(part == 0 ? pair->shape_real : pair->shape_imag, own, bytes);
     }

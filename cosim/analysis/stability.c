@@ -215,8 +215,7 @@ static bough_status refine(map *m, const ritz *r, bough_stability *result) {
     const bough_arnoldi *basis = &m->arnoldi;
     double *real = m->pair, *imaginary = m->pair + m->n, *image = m->arnoldi.image;
     memset(m->pair, 0, 2 * (size_t)m->n * sizeof(double));
-    bough_arnoldi_combine(basis, r->column, m->n, real);
-    if (r->pair) bough_arnoldi_combine(basis, r->column + 1, m->n, imaginary);
+    bough_arnoldi_combine(basis, r->column, r->pair ? 2 : 1, m->pair);
     BOUGH_TRY(apply(m, 1, real, image));
     double a = bough_arnoldi_product(basis, real, image);
     double b = -bough_arnoldi_product(basis, imaginary, image);
