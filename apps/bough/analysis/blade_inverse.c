@@ -227,27 +227,31 @@ static void sum_harmonics(bough_arena *arena, const bough_blade_inverse *x) {
     }
 }
 
-// z (parts × columns × n) ← a⁻¹ z of a harmonic's matrices a (parts × n × n) and z.
-static bool divide_harmonic(bough_arena *arena, size_t parts, size_t n, const double *a, size_t columns,
-                            double *z) {
+// z (parts × columns × n) ← a⁻¹ z of a harmonic's matrices a (n × n, the next `stride` entries further) and
+// z.
+static bool divide_harmonic(bough_arena *arena, size_t parts, size_t n, const double *a, size_t stride,
+                            size_t columns, double *z) {
     size_t q = parts * n;
     double *t = bough_arena_doubles(arena, q * q), *joined = bough_arena_doubles(arena, q * columns);
     int *pivot = bough_arena_take(arena, q * sizeof *pivot);
     // of cosine and sine together: a, and what the sine does to the cosine, which to the sine is the opposite
     for (size_t p = 0; p < parts; p++) {
-        for (size_t k = 0; k < n * parts * n; k++) {
-            size_t from = k / (n * n), j = k / n % n, i = k % n;
-            double sign = p == 1 && from == 0 ? -1 : 1;
-            t[(from * n + j) * q + p * n + i] = sign * a[(p ^ from) * n * n + j * n + i];
+        const double sign = p == 1 ? -1 : 1;
+        for (size_t j = 0; j < parts * n; j++) {
+            size_t from = j / n;
+            const double *own = a + (p ^ from) * stride + j % n * n;
+            double *to = t + j * q + p * n;
+            for (size_t i = 0; i < n; i++) to[i] = from == 0 ? sign * own[i] : own[i];
         }
-        for (size_t k = 0; k < columns * n; k++)
-            joined[k / n * q + p * n + k % n] = (p == 1 ? -1 : 1) * z[p * columns * n + k];
+        for (size_t k = 0; k < columns; k++)
+            for (size_t i = 0; i < n; i++) joined[k * q + p * n + i] = sign * z[(p * columns + k) * n + i];
     }
     if (!bough_dense_factor((int)q, t, pivot)) return false;
     bough_dense_solve((int)q, (int)columns, t, pivot, joined);
     for (size_t p = 0; p < parts; p++) {
-        for (size_t k = 0; k < columns * n; k++)
-            z[p * columns * n + k] = (p == 1 ? -1 : 1) * joined[k / n * q + p * n + k % n];
+        const double sign = p == 1 ? -1 : 1;
+        for (size_t k = 0; k < columns; k++)
+            for (size_t i = 0; i < n; i++) z[(p * columns + k) * n + i] = sign * joined[k * q + p * n + i];
     }
     return true;
 }
@@ -270,7 +274,7 @@ static bool set_vertex(bough_arena *arena, const bough_blade_inverse *x, int ver
             for (int o = 0; o < parts; o++) matrix[(o * SLOW + c) * SLOW + c] += x->spin[first + o];
             f[c * SLOW + c] = 1;
         }
-        if (!divide_harmonic(arena, (size_t)parts, SLOW, matrix, STATES, f)) return false;
+        if (!divide_harmonic(arena, (size_t)parts, SLOW, matrix, SLOW * SLOW, STATES, f)) return false;
         for (int k = 0; k < parts * SIZE; k++) {
             int row = k / SIZE * SLOW + k % SLOW, column = k % SIZE / SLOW;
             x->kinematic[((first * SLOW + row) * STATES + column) * x->n_vertex + vertex] = f[k];
@@ -279,22 +283,26 @@ static bool set_vertex(bough_arena *arena, const bough_blade_inverse *x, int ver
     return true;
 }
 
-// U F of the kinematic columns of U (n_part × d × r), here by rows, as the result.
-static double *follow_kinematics(bough_arena *arena, const bough_blade_inverse *x, const double *u) {
-    size_t r = (size_t)x->r, d = (size_t)x->d, all = (size_t)x->n_part * d * r;
-    double *rows, *moved;
-    bough_arena_each(arena, all, &rows, &moved);
-    for (size_t k = 0; k < all; k++) rows[k / (d * r) * d * r + k % d * r + k / d % r] = u[k];
+// U (n_part × d × r) becomes that of U_k F in the kinematic columns and U_d + U_k F in the dynamic ones.
+static void follow_kinematics(bough_arena *arena, const bough_blade_inverse *x, double *u) {
+    size_t r = (size_t)x->r, d = (size_t)x->d, n = (size_t)x->n_part * r;
+    double *rows, *moved; // by rows
+    bough_arena_each(arena, d * n, &rows, &moved);
+    for (size_t j = 0; j < n; j++)
+        for (size_t i = 0; i < d; i++) rows[(j / r * d + i) * r + j % r] = u[j * d + i];
     add_kinematic(x, true, x->d, rows, moved);
-    return moved;
+    for (size_t j = 0; j < n; j++) {
+        double kept = j % r < (size_t)x->n_slow ? 0 : 1;
+        for (size_t i = 0; i < d; i++)
+            u[j * d + i] = kept * u[j * d + i] + moved[(j / r * d + i) * r + j % r];
+    }
 }
 
 // theory (116): D_d.
 static bool factor(bough_arena *arena, const bough_blade_inverse *x) {
     size_t r = (size_t)x->r, d = (size_t)x->d, slow = (size_t)x->n_slow, block = d * r;
     const alone b = find_alone(arena, x);
-    double *u = bough_arena_doubles(arena, (size_t)x->n_part * block),
-           *matrix = bough_arena_doubles(arena, (size_t)x->n_part * d * d);
+    double *u = bough_arena_doubles(arena, (size_t)x->n_part * block);
     for (int i = 0; i < x->n_vertex; i++)
         if (!set_vertex(arena, x, i, &b)) return false;
     // U = rows d of P N
@@ -304,21 +312,16 @@ static bool factor(bough_arena *arena, const bough_blade_inverse *x) {
         bough_dense_product((bough_product){x->d, x->r, x->d, false, 1, x->spin[part]}, b.dynamic + slow * d,
                             x->air + (size_t)part * block, to);
     }
-    const double *moved = follow_kinematics(arena, x, u);
+    follow_kinematics(arena, x, u);
     for (int m = 0; m < n_harmonic(x); m++) {
-        size_t first = (size_t)first_of(m);
-        double *to = x->dynamic + first * block;
-        memcpy(to, b.dynamic, block * sizeof *to);
+        size_t parts = (size_t)parts_of(x, m);
+        double *to = x->dynamic + (size_t)first_of(m) * block, *own = u + (size_t)first_of(m) * block;
         // P_d − ((U_k F)_k, 0), and C = E + U_d + (U_k F)_d
-        for (size_t k = 0; k < (size_t)parts_of(x, m) * block; k++) {
-            size_t o = k / block, j = k / d % r, i = k % d;
-            double more = moved[((first + o) * d + i) * r + j];
-            if (j < slow)
-                to[k] -= more;
-            else
-                matrix[(o * d + j - slow) * d + i] = u[first * block + k] + more + (o == 0 && j == slow + i);
-        }
-        if (!divide_harmonic(arena, (size_t)parts_of(x, m), d, matrix, r, to)) return false;
+        memcpy(to, b.dynamic, block * sizeof *to);
+        for (size_t p = 0; p < parts; p++)
+            for (size_t k = 0; k < slow * d; k++) to[p * block + k] -= own[p * block + k];
+        for (size_t i = 0; i < d; i++) own[(slow + i) * d + i] += 1;
+        if (!divide_harmonic(arena, parts, d, own + slow * d, block, r, to)) return false;
     }
     return true;
 }
