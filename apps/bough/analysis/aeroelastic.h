@@ -8,6 +8,8 @@
 #include "apps/bough/model/blade_group.h"
 #include "cosim/analysis/modes.h"
 
+#include <complex.h>
+
 // The system and the state of the modes; all borrowed.
 typedef struct bough_aeroelastic {
     const bough_simulation *simulation;
@@ -34,5 +36,21 @@ typedef struct bough_mode_vectors {
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
                                      bough_eigen_pair *pair, bough_eigen_count *count,
                                      bough_mode_vectors *vectors, int *unpaired);
+
+// -- the same modes on another mesh (mesh_change.c) --------------------------------------------------
+
+// Modes whose vectors are known; all borrowed.
+typedef struct bough_known_modes {
+    const bough_simulation *simulation;
+    int n;
+    const bough_eigen_pair *pair;     // (n)
+    const bough_mode_vectors *vector; // (n) of them, with as many states of the air as on the other mesh
+} bough_known_modes;
+
+// By Galerkin's method, theory (117): sets the eigenvalues `there` (n) [1/s] of the system on the other mesh,
+// whose bodies are the same and have states of their own or are rods. NaN of a mode without a left vector, or
+// of which less than half is in one mode there. BOUGH_FAILED where the system is singular about its point.
+bough_status bough_mesh_change_find(bough_arena *arena, const bough_known_modes *known,
+                                    const bough_aeroelastic *system, double complex *there);
 
 #endif

@@ -250,6 +250,7 @@ static void drop_other_motions(const bough_tree *tree, double point, int count, 
     for (int k = 0; k < n; k++) {
         if (!is_mode(tree, point, &v->pair[k])) continue;
         v->pair[kept] = v->pair[k];
+        if (v->vector) v->vector[kept] = v->vector[k];
         memcpy(v->change[kept++], v->change[k], sizeof *v->change);
     }
     v->found = kept;
@@ -303,13 +304,12 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     int wanted = v->count.wanted = count + FREE_MOTIONS, azimuths = air->changes ? air->azimuths.n : 1;
     const bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air->tangent};
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
-    bough_mode_vectors *vector = bough_arena_take(arena, (size_t)wanted * sizeof *vector);
-    BOUGH_TRY(bough_aeroelastic_modes(arena, &system, v->pair, &v->count, azimuths > 1 ? vector : NULL,
-                                      &v->unpaired));
+    v->vector = azimuths > 1 ? bough_arena_take(arena, (size_t)wanted * sizeof *v->vector) : NULL;
+    BOUGH_TRY(bough_aeroelastic_modes(arena, &system, v->pair, &v->count, v->vector, &v->unpaired));
     if (azimuths == 1) return bough_ok();
     int n = count_pairs(s->tree, x->def.point, count, v);
     double complex *change = bough_arena_take(arena, (size_t)(azimuths * wanted) * sizeof *change);
-    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, n, vector, change));
+    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, n, v->vector, change));
     set_changes(azimuths, n, change, v);
     return bough_ok();
 }
@@ -342,39 +342,50 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     return (!bough_rods_are_independent(s) || reduced) && modes->speed == 0 && !axis;
 }
 
-// Finds the state, the air about it and the eigenvalues; `changes`: also their changes with the azimuth.
-static bough_status find(bough_arena *arena, bough_simulation *s, int count, bool changes,
-                         bough_vibration *v) {
+// Brings the scene to the state of its modes, and finds the air about it.
+static bough_status settle(bough_arena *arena, bough_simulation *s, bough_vibration *v,
+                           bough_vibration_point *x, air_about *air) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    bough_vibration_point x;
-    air_about air = {.changes = changes};
-    *v = (bough_vibration){.asked = count, .time = balanced ? bough_equilibrium_time(s) : 0};
-    v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
+    v->time = balanced ? bough_equilibrium_time(s) : 0;
     if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, NULL));
-    BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, &x));
-    v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
-    double uneven = x.def.spin != 0 ? imbalance(s) : 0, point;
+    BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, x));
+    v->spin = fabs(x->group.speed) < at_rest ? 0 : x->group.speed;
+    double uneven = x->def.spin != 0 ? imbalance(s) : 0;
     if (uneven > even) return refuse(s, uneven);
-    v->n_blade = x.group.n;
-    v->frozen = is_frozen(s, &x.group);
-    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, &x));
-    bough_arena *of_air = bough_arena_child(arena);
-    BOUGH_TRY(find_air(of_air, s, v->time, &x, &air));
-    v->n_azimuth = air.azimuths.n;
-    BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
-    bool dynamic = air.follows && air.dynamic; // with other residuals
-    for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x.def.point)) > 0; k++) {
-        x.def.point = point;
-        BOUGH_TRY(solve_about(arena, s, &x, &air, count, v));
+    v->n_blade = x->group.n;
+    v->frozen = is_frozen(s, &x->group);
+    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, x));
+    BOUGH_TRY(find_air(arena, s, v->time, x, air));
+    v->n_azimuth = air->azimuths.n;
+    return bough_ok();
+}
+
+// Finds the eigenvalues and what their modes are.
+static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bough_vibration_point *x,
+                          const air_about *air, bough_vibration *v) {
+    double point;
+    v->asked = count;
+    v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
+    BOUGH_TRY(solve_about(arena, s, x, air, count, v));
+    bool dynamic = air->follows && air->dynamic; // with other residuals
+    for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x->def.point)) > 0; k++) {
+        x->def.point = point;
+        BOUGH_TRY(solve_about(arena, s, x, air, count, v));
     }
-    bough_arena_destroy(of_air);
     for (int k = 0; k < v->found; k++) set_value(&v->pair[k], v->change[k], &v->mode[k]);
-    bough_vibration_describe(arena, s, &x, v);
+    bough_vibration_describe(arena, s, x, v);
     return bough_ok();
 }
 
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
-    return find(arena, s, count, true, v);
+    bough_vibration_point x;
+    air_about air = {.changes = true};
+    *v = (bough_vibration){0};
+    bough_arena *of_air = bough_arena_child(arena);
+    BOUGH_TRY(settle(of_air, s, v, &x, &air));
+    BOUGH_TRY(solve(arena, s, count, &x, &air, v));
+    bough_arena_destroy(of_air);
+    return bough_ok();
 }
 
 // -- another mesh ---------------------------------------------------------------------------------
@@ -404,11 +415,13 @@ static double distance(const bough_scene_mode *a, const bough_scene_mode *b) {
     return difference / (2 * BOUGH_PI * a->frequency);
 }
 
+// Relative changes of λ: farther is another motion; nearer follow from the vectors to a tenth.
+static const double farthest = 0.5, little = 0.02;
+
 // The least distance first. Modes of other bodies and directions are farther: but in round sections, and
-// where two modes nearly have one frequency, the direction means little. What is farther than half of |λ| is
-// another motion.
+// where two modes nearly have one frequency, the direction means little.
 static void pair_modes(const bough_vibration *v, const bough_vibration *other, bool *taken) {
-    static const double unlike = 4, farthest = 0.5;
+    static const double unlike = 4;
     for (int first = 0, second; first >= 0;) {
         double least = farthest;
         first = second = -1;
@@ -429,15 +442,40 @@ static void pair_modes(const bough_vibration *v, const bough_vibration *other, b
         if (isnan(v->mode[i].moved) && is_compared(&v->mode[i])) v->mode[i].moved = HUGE_VAL;
 }
 
+// Follows the modes by their vectors; false where that is not possible, or not accurate because they change
+// by much.
+static bool follow_modes(bough_arena *arena, const bough_simulation *s, const bough_aeroelastic *other,
+                         bough_vibration *v) {
+    const bough_known_modes known = {s, v->found, v->pair, v->vector};
+    double complex *there = bough_arena_take(arena, ((size_t)v->found + 1) * sizeof *there);
+    // shapes of a modal body on another mesh are not the same states
+    if (!v->vector || bough_steady_rods(s) < s->n_rod) return false;
+    bough_status status = bough_mesh_change_find(arena, &known, other, there);
+    bool good = bough_is_ok(&status);
+    for (int k = 0; k < v->found && good; k++) {
+        if (!is_compared(&v->mode[k])) continue;
+        double complex value = v->pair[k].real + v->pair[k].imaginary * (double complex)I;
+        v->mode[k].moved = cabs(there[k] - value) / cabs(value);
+        good = v->mode[k].moved <= little;
+    }
+    for (int k = 0; k < v->found && !good; k++) v->mode[k].moved = (double)NAN;
+    return good;
+}
+
 bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s, bough_vibration *v,
                                      bool *compared) {
     const bough_scene *other = bough_coarser_scene_beside(arena, s, BOUGH_COARSER_MESH);
     bough_simulation *companion;
-    bough_vibration of_other;
+    bough_vibration of_other = {0};
+    bough_vibration_point x;
+    air_about air = {0};
     *compared = has_other_mesh(s->scene, other);
     if (!*compared) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, other, &companion));
-    BOUGH_TRY(find(arena, companion, v->found + MODES_BEYOND, false, &of_other));
+    BOUGH_TRY(settle(arena, companion, &of_other, &x, &air));
+    const bough_aeroelastic system = {companion, x.whole, &x.def, &x.group, &air.tangent};
+    if (follow_modes(arena, s, &system, v)) return bough_ok();
+    BOUGH_TRY(solve(arena, companion, v->found + MODES_BEYOND, &x, &air, &of_other));
     pair_modes(v, &of_other, bough_arena_take(arena, ((size_t)of_other.found + 1) * sizeof(bool)));
     return bough_ok();
 }

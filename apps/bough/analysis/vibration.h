@@ -70,10 +70,11 @@ typedef struct bough_vibration {
     bough_eigen_count count; // of the eigenvalues among which they are sought
     int unpaired;            // eigenvectors left out of the system with air: see aeroelastic.h
     int found;
-    bough_scene_mode *mode; // (found) by the distance of λ from a point near 0
-    bough_eigen_pair *pair; // (found)
-    int n_azimuth;          // over which the system is averaged; 1: the scene's azimuth alone
-    double (*change)[2];    // (found) of each mode over them, as frequency_change and damping_change
+    bough_scene_mode *mode;            // (found) by the distance of λ from a point near 0
+    bough_eigen_pair *pair;            // (found)
+    struct bough_mode_vectors *vector; // (found) of the same in the air; NULL: not found
+    int n_azimuth;                     // over which the system is averaged; 1: the scene's azimuth alone
+    double (*change)[2]; // (found) of each mode over them, as frequency_change and damping_change
 } bough_vibration;
 
 // The state of the modes: the simulation's present state, with the mean deflection of rotating blades (not on
