@@ -63,8 +63,10 @@ typedef struct bough_integrator_options {
     double step;    // longest step of generalised-α and the Rosenbrock method [s]; 0: none
     double rho;     // of generalised-α: spectral radius at infinite frequency, 0 … 1
     int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
+    int most_order; // of IDA; 0: 5
     bool coarse;    // of long steps: the Rosenbrock method takes a third of the usual damping to cover old
-                    // tangents, and renews them after half the usual steps
+                    // tangents, and renews them after half the usual steps; the automatic choice of a
+                    // method has one more
 } bough_integrator_options;
 
 // Options besides rtol that only some methods read.
@@ -80,6 +82,8 @@ typedef struct bough_integrator_ops {
     // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1; after a failure *t is the time
     // of y. `restart`: y was changed, or f jumps at *t.
     bough_status (*advance)(void *self, double *t, double t1, bool restart, double *y);
+    // Sets the most steps in a macro step from now on. NULL: the method has no such limit.
+    void (*limit)(void *self, int most_steps);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
     // The memory that the next step depends on, besides t and y. NULL: the method restarts.
     void (*transfer)(void *self, bough_snapshot *s);

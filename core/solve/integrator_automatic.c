@@ -1,35 +1,51 @@
-// The default method: the Rosenbrock method, and IDA where it takes fewer evaluations.
+// The default method: the Rosenbrock method, and IDA where that is cheaper.
 // The former's steps are long where motion is slow or stiff and damped. Where stiff members vibrate without
 // damping every method must follow them, and IDA then takes an evaluation a step and order 5: a tenth of the
 // cost at a tenth of the tolerance. So IDA is tried after a macro step of many steps, and stays where it
-// takes fewer evaluations for the same time; it also takes over where the Rosenbrock method stops.
+// is cheaper; it also takes over where the Rosenbrock method stops.
+// Orders above 2 are unstable near the imaginary axis. Where vibrations are small beside a loose tolerance,
+// this limits their steps, and not the error. So a coarse solution also has IDA of order 2, at its whole
+// tolerance. The methods that it does not use are tried after 2 macro steps of IDA, 6 more, 18 more, ...
 #include "core/solve/integrator.h"
 
 #include <math.h>
+#include <string.h>
+
+enum { ROSENBROCK, IDA, IDA_OF_ORDER_2, METHODS };
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
 enum { MANY_STEPS = 100 };           // in a macro step: beside as many the start of IDA costs little
+enum { FIRST_WAIT = 2, LONGER = 3 }; // macro steps before the first trial; factor of each further wait
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
 static const double tighter = 0.1;   // tolerance of IDA, relative: its errors add up over many short steps
+static const double cheaper = 0.7;   // cost of a method that takes over, relative
 
 typedef struct automatic {
-    bough_integrator rosenbrock, ida;
-    bool fast;   // IDA took the last macro step: its history goes on
-    bool stays;  // IDA takes the next one
-    double work; // evaluations of the Rosenbrock method per time, where it takes many steps; else 0 [1/s]
-    double lost; // `work` when IDA last took no fewer [1/s]
+    int n, n_method;
+    bough_integrator method[METHODS];
+    int most_steps[METHODS]; // in a macro step
+    int now;                 // method of the last macro step
+    bool goes_on;            // it can go on without a start
+    double cost;             // its cost per time there; 0: few steps of the Rosenbrock method [1/s]
+    double lost;             // cost of the Rosenbrock method when no other was cheaper [1/s]
+    int taken, wait;         // macro steps by `now` in a row; how many before the others are tried
+    double *kept;            // (n) state before a trial
 } automatic;
 
 static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     automatic *m = bough_arena_take(arena, sizeof *m);
-    bough_integrator_options own = *options;
-    own.kind = BOUGH_ROSENBROCK;
-    own.most_steps = ROSENBROCK_STEPS;
-    bough_integrator_create(arena, ode, &own, &m->rosenbrock); // of any size
-    own.kind = BOUGH_IDA;
-    own.most_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
-    own.rtol *= tighter;
-    bough_integrator_create(arena, ode, &own, &m->ida);
+    int ida_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
+    m->n = ode->n;
+    m->n_method = options->coarse ? METHODS : IDA_OF_ORDER_2;
+    m->kept = bough_arena_doubles(arena, (size_t)ode->n);
+    for (int k = 0; k < m->n_method; k++) {
+        bough_integrator_options own = *options;
+        own.kind = k == ROSENBROCK ? BOUGH_ROSENBROCK : BOUGH_IDA;
+        own.most_steps = m->most_steps[k] = k == ROSENBROCK ? ROSENBROCK_STEPS : ida_steps;
+        if (k == IDA) own.rtol *= tighter;
+        if (k == IDA_OF_ORDER_2) own.most_order = 2;
+        bough_integrator_create(arena, ode, &own, &m->method[k]); // of any size
+    }
     return m;
 }
 
@@ -39,51 +55,81 @@ static bough_statistics work_of(const bough_integrator *integrator) {
     return sum;
 }
 
-// Advances from the last good step on, and counts the work of it.
-static bough_status take(bough_integrator *integrator, double *t, double t1, bool restart, double *y,
-                         bough_statistics *work) {
-    bough_statistics before = work_of(integrator);
-    bough_status status = integrator->ops->advance(integrator->self, t, t1, restart, y);
-    *work = work_of(integrator);
-    bough_statistics_add(work, -1, &before);
+// Advances by method k from the last good step on, and finds its cost.
+static bough_status take(automatic *m, int k, double *t, double t1, bool restart, double *y) {
+    const bough_integrator *x = &m->method[k];
+    bough_statistics work = work_of(x);
+    double begun = *t;
+    bough_statistics_add(&work, -2, &work); // the negative
+    bough_status status = x->ops->advance(x->self, t, t1, restart, y);
+    x->ops->statistics(x->self, &work);
+    // tangents and factors take as long as two evaluations each
+    double cost = (double)(work.derivatives + 2 * (work.jacobians + work.factorisations)) / (t1 - begun);
+    m->cost = k != ROSENBROCK || work.steps > MANY_STEPS ? cost : 0;
+    m->taken = k == m->now ? m->taken + 1 : 1;
+    m->now = k;
+    m->goes_on = bough_is_ok(&status);
     return status;
+}
+
+// A macro step by method k in place of the present one. False: it is not cheaper, and the state is as before.
+static bool try_other(automatic *m, int k, double *t, double t1, double *y) {
+    const bough_integrator *x = &m->method[k];
+    const automatic present = *m;
+    double begun = *t, most = cheaper * m->cost * (t1 - begun); // evaluations
+    size_t size = (size_t)m->n * sizeof *y;
+    memcpy(m->kept, y, size);
+    x->ops->limit(x->self, (int)fmin(k == ROSENBROCK ? most / 4 : most, m->most_steps[k]));
+    bough_status status = take(m, k, t, t1, true, y);
+    x->ops->limit(x->self, m->most_steps[k]);
+    if (bough_is_ok(&status) && m->cost * (t1 - begun) < most) return true;
+    *m = present;
+    m->goes_on = false; // the factors are of the other
+    *t = begun;
+    memcpy(y, m->kept, size);
+    return false;
+}
+
+// The Rosenbrock method last.
+static bool try_others(automatic *m, double *t, double t1, double *y) {
+    bool taken = false;
+    int now = m->now;
+    for (int i = 1; i <= METHODS && !taken; i++) {
+        int k = i % METHODS;
+        taken = k != now && k < m->n_method && try_other(m, k, t, t1, y);
+    }
+    if (now != ROSENBROCK) m->wait *= LONGER;
+    if (m->now == ROSENBROCK) m->lost = m->cost;
+    if (!taken) m->taken = 0;
+    return taken;
+}
+
+static bool is_due(const automatic *m) {
+    if (m->now == ROSENBROCK) return m->cost > 2 * m->lost;
+    return m->n_method == METHODS && m->taken >= m->wait;
 }
 
 static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     automatic *m = self;
-    bough_statistics work;
-    double begun = *t;
-    bool anew = restart || m->fast;
-    if (restart) m->stays = false;
-    if (restart) m->work = m->lost = 0;
-    // IDA: it took the last macro step, or the Rosenbrock method took many steps
-    if (m->stays || m->work > 2 * m->lost) {
-        bough_status status = take(&m->ida, t, t1, !m->stays, y, &work);
-        m->fast = bough_is_ok(&status);
-        bool left = m->stays && !m->fast;
-        // it stays if it was cheaper; otherwise twice the work is needed before the next trial
-        m->stays = m->fast && (m->stays || (double)work.derivatives < m->work * (t1 - begun));
-        if (!m->stays) m->lost = m->work;
-        if (m->fast || left) return status;
-        // it failed: the macro step is repeated
-        *t = begun;
-        anew = true;
+    if (restart) {
+        m->now = ROSENBROCK;
+        m->goes_on = false;
+        m->cost = m->lost = 0;
+        m->wait = FIRST_WAIT;
     }
-    // the Rosenbrock method; where it stops, IDA from there on
-    bough_status stopped = take(&m->rosenbrock, t, t1, anew, y, &work);
-    m->work = work.steps > MANY_STEPS ? (double)work.derivatives / (t1 - begun) : 0;
-    m->fast = m->stays = !bough_is_ok(&stopped);
-    if (!m->fast) return stopped;
-    begun = *t;
-    bough_status status = take(&m->ida, t, t1, true, y, &work);
-    m->fast = m->stays = bough_is_ok(&status);
-    return m->fast || *t > begun ? status : stopped;
+    if (is_due(m) && try_others(m, t, t1, y)) return bough_ok();
+    double begun = *t;
+    int now = m->now;
+    bough_status first = take(m, now, t, t1, !m->goes_on, y), status = first;
+    // where it stops, IDA from there on
+    for (int k = IDA; !bough_is_ok(&status) && k < m->n_method; k++)
+        if (k != now) status = take(m, k, t, t1, true, y);
+    return bough_is_ok(&status) || *t > begun ? status : first;
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
     const automatic *m = self;
-    m->rosenbrock.ops->statistics(m->rosenbrock.self, sum);
-    m->ida.ops->statistics(m->ida.self, sum);
+    for (int k = 0; k < m->n_method; k++) m->method[k].ops->statistics(m->method[k].self, sum);
 }
 
 const bough_integrator_ops bough_integrator_automatic = {

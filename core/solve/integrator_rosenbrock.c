@@ -277,6 +277,11 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
                       *t, reason);
 }
 
+static void limit(void *self, int most_steps) {
+    rosenbrock *m = self;
+    m->most_steps = most_steps;
+}
+
 static void statistics(const void *self, bough_statistics *sum) {
     const rosenbrock *m = self;
     bough_statistics_add(sum, 1, &m->sum);
@@ -288,5 +293,6 @@ const bough_integrator_ops bough_integrator_rosenbrock = {
     .reads = BOUGH_METHOD_READS_STEP,
     .create = create,
     .advance = advance,
+    .limit = limit,
     .statistics = statistics,
 };

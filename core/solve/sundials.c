@@ -59,6 +59,7 @@ struct run {
     SUNLinearSolver solver;
     void *memory; // the library's
     int most_steps;
+    int most_order; // of IDA; 0: 5
     bool started;
     // written by the callbacks
     double gamma;   // of the next factorisation
@@ -229,6 +230,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     r->ode = *ode;
     bool limited = options->kind == BOUGH_IDA && options->most_steps > 0;
     r->most_steps = limited ? options->most_steps : r->library->most_steps;
+    r->most_order = options->most_order;
     if (!take(r, options->rtol) || !configure(r)) bough_arena_leave(arena);
     return r;
 }
@@ -305,6 +307,11 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     *t = t1;
     memcpy(y, own, (size_t)r->ode.n * sizeof *own);
     return bough_ok();
+}
+
+static void limit(void *self, int most_steps) {
+    run *r = self;
+    r->most_steps = most_steps;
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
@@ -482,7 +489,8 @@ static int ida_tangents(double t, double cj, N_Vector y, N_Vector of, N_Vector r
 static int ida_begin(run *r) { return IDAInit(r->memory, ida_residual, 0, r->y, r->slope); }
 
 static int ida_end(run *r) {
-    return IDASetJacFn(r->memory, ida_tangents) | IDASetMaxErrTestFails(r->memory, most_failures);
+    int bad = r->most_order > 0 ? IDASetMaxOrd(r->memory, r->most_order) : IDA_SUCCESS;
+    return bad | IDASetJacFn(r->memory, ida_tangents) | IDASetMaxErrTestFails(r->memory, most_failures);
 }
 
 // With order 1 from y, whose rate is f.
@@ -521,7 +529,7 @@ static const library *library_of(bough_integrator_kind kind) {
     return kind == BOUGH_IDA ? &ida : kind == BOUGH_CVODE_BDF ? &cvode : &arkode;
 }
 
-#define OPERATIONS .create = create, .advance = advance, .statistics = statistics
+#define OPERATIONS .create = create, .advance = advance, .limit = limit, .statistics = statistics
 
 const bough_integrator_ops bough_integrator_ida = {.name = "ida", .title = "IDA", OPERATIONS};
 

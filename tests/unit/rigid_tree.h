@@ -32,7 +32,7 @@ static inline fixture build_with(const bough_tree_def *def, bough_integrator_kin
     check_ok(bough_tree_create(f.arena, def, &f.tree));
     f.data = bough_tree_data_create(f.arena, f.tree);
     f.s = bough_tree_system_create(f.arena, f.tree, "tree");
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0, false});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){.kind = solver, .rtol = rtol, .rho = 0.8});
     assert_true(f.s.n_state <= MOST);
     return f;
 }

@@ -45,7 +45,7 @@ typedef struct outcome {
 } outcome;
 
 // `count` macro steps [s] from (0, 1).
-static outcome run_for(bough_integrator_kind kind, double omega, int count, double macro) {
+static outcome run_with(const bough_integrator_options *options, double omega, int count, double macro) {
     static const double scale[N] = {1, 1};
     oscillator o = {.omega = omega};
     bough_ode ode = {.name = "oscillator",
@@ -56,10 +56,9 @@ static outcome run_for(bough_integrator_kind kind, double omega, int count, doub
                      .linearise = linearise,
                      .factor = factor,
                      .solve = solve};
-    bough_integrator_options options = {.kind = kind, .rtol = 1e-5};
     bough_integrator method;
     check_arena(arena);
-    outcome r = {.status = bough_integrator_create(arena, &ode, &options, &method)};
+    outcome r = {.status = bough_integrator_create(arena, &ode, options, &method)};
     assert_int_equal(r.status.code, BOUGH_OK);
     double y[N] = {0, 1};
     for (int k = 0; k < count && bough_is_ok(&r.status); k++) {
@@ -68,6 +67,10 @@ static outcome run_for(bough_integrator_kind kind, double omega, int count, doub
     r.error = hypot(y[0] - sin(omega * count * macro), y[1] - cos(omega * count * macro));
     method.ops->statistics(method.self, &r.work);
     return r;
+}
+
+static outcome run_for(bough_integrator_kind kind, double omega, int count, double macro) {
+    return run_with(&(bough_integrator_options){.kind = kind, .rtol = 1e-5}, omega, count, macro);
 }
 
 static outcome run(bough_integrator_kind kind, double omega, int count) {
@@ -102,6 +105,23 @@ TEST(short_macro_steps_leave_fast_vibrations_to_ida) {
     assert_int_equal(own.status.code, BOUGH_OK);
     assert_true(own.work.derivatives < rosenbrock.work.derivatives / 3);
     assert_true(own.error < rosenbrock.error);
+}
+
+// Beside a tenth of the tolerance: less than half the work where the vibration is small, and not lost where
+// it is large.
+TEST(a_coarse_solution_has_order_2_where_vibrations_are_small) {
+    static const double rtol[2] = {2e-3, 2e-4};
+    for (int k = 0; k < 2; k++) {
+        outcome coarse =
+            run_with(&(bough_integrator_options){.kind = BOUGH_AUTOMATIC, .rtol = rtol[k], .coarse = true},
+                     25000, 50, 0.01);
+        outcome fine = run_with(&(bough_integrator_options){.kind = BOUGH_AUTOMATIC, .rtol = rtol[k] / 10},
+                                25000, 50, 0.01);
+        print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", coarse.work.derivatives,
+                      fine.work.derivatives, coarse.error, fine.error);
+        assert_true(coarse.work.derivatives < (k == 0 ? 0.5 : 0.9) * (double)fine.work.derivatives);
+        assert_true(k == 0 || coarse.error < 0.5);
+    }
 }
 
 TEST(what_nobody_would_wait_for_ends_with_its_reason) {

@@ -87,7 +87,8 @@ static void build(problem *p, method m, double step, double *y) {
     *p = (problem){.arena = check_memory(), .m = m};
     bough_ode ode = {"sample", m.n, scale, p, derivative, NULL, linearise, NULL, factor, solve, 0};
     // Newton's method of generalised-α to rounding; the Rosenbrock method takes all steps that it is given
-    bough_integrator_options options = {m.kind, m.n > LINEAR ? 1e3 : 1e-10, step, m.rho, 0, false};
+    bough_integrator_options options = {
+        .kind = m.kind, .rtol = m.n > LINEAR ? 1e3 : 1e-10, .step = step, .rho = m.rho};
     check_ok(bough_integrator_create(p->arena, &ode, &options, &p->micro));
     exact(0, y);
 }
@@ -241,7 +242,8 @@ TEST(undamped_systems_keep_tangents_that_hardly_change) {
         bough_arena *arena = check_memory();
         bough_ode ode = {"spring",         4,    scale,         &p,           spring_derivative, NULL,
                          spring_linearise, NULL, spring_factor, spring_solve, INFINITY};
-        bough_integrator_options options = {BOUGH_ROSENBROCK, 1e3, 0.01, 0, 0, coarse};
+        bough_integrator_options options = {
+            .kind = BOUGH_ROSENBROCK, .rtol = 1e3, .step = 0.01, .coarse = coarse};
         bough_integrator micro;
         double y[4] = {1, 0, 0.1, 0};
         check_ok(bough_integrator_create(arena, &ode, &options, &micro));

@@ -82,7 +82,7 @@ TEST(operations_agree_on_a_deformed_loaded_rod) {
     contract_point at = {0.5, state, input, 1e-6};
     contract_check(r.m, at, 0.03, 0.01);
     // by another method
-    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0, 0, false};
+    bough_integrator_options steps = {.kind = BOUGH_ROSENBROCK, .rtol = 1e-3, .step = 2e-3};
     contract_check(member_of(r.arena, &r.s, steps), at, 0.03, 0.01);
     for (int i = 0; i < N; i++) { // advance normalises the quaternions
         bough_quaternion p = turn_of(state, N, i + 1);
@@ -433,7 +433,7 @@ static void swing(const rod *r, double length, double size) {
 TEST(stiff_rod_keeps_its_amplitude_under_the_rosenbrock_method) {
     const double length = 10, period = 1;
     const double stiffness[6] = {3e8, 3e8, 1e9, 3.2e4, 3.2e4, 2.5e4}, inertia[4] = {1.002, 1e-4, 1e-4, 2e-4};
-    const bough_integrator_options steps = {BOUGH_ROSENBROCK, 3e-4, 0.01, 0, 0, false};
+    const bough_integrator_options steps = {.kind = BOUGH_ROSENBROCK, .rtol = 3e-4, .step = 0.01};
     check_arena(arena);
     rod r = make(arena, sample_uniform(arena, 24, length, stiffness, 0, inertia), 1e-6, at_rest);
     r.m = member_of(arena, &r.s, steps);
