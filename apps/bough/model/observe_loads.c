@@ -109,7 +109,7 @@ static bough_vec3 bow_of_loads(const sensor *x, int i) {
     return bough_mat3_mul(axes, bough_v3_load(moment));
 }
 
-// theory (118): force in the middle of a segment less that of the segment, whose second derivative is given,
+// theory (119): force in the middle of a segment less that of the segment, whose second derivative is given,
 // by the loads along it and its neighbours, whose mean bow is -(h²/12) d₃×f.
 static bough_vec3 middle_excess(const sensor *x, int i, double distance, bough_vec3 second) {
     double h = segment_length(x, i);
@@ -163,7 +163,7 @@ static bough_vec3 moment_curvature(const sensor *x, int i) {
     return count > 1 ? bough_scale(0.5, sum) : sum;
 }
 
-// theory (117): a parabola of known mean over the segment. In the outer half of the first and the last
+// theory (118): a parabola of known mean over the segment. In the outer half of the first and the last
 // segment it ends at the moment of the root and of the end.
 static bough_vec3 bending_at(const sensor *x, const end_loads *ends, place at) {
     const bough_beam *beam = x->beam;
