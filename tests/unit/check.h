@@ -1,4 +1,5 @@
-// What every test file includes: cmocka, the declaration of a test, and the comparison of numbers.
+// What every test file includes: cmocka, mathematics, streams and strings of the C library, the declaration
+// of a test, and the comparison of numbers.
 //
 //     TEST(a_sentence_that_holds) { check_near(length, 2, 1e-12, 0); }
 //

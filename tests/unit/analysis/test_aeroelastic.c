@@ -6,8 +6,6 @@
 #include "core/base/linalg.h"
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 // The blades of the run-up rigid on a heavy hub, whose nacelle slides along the wind on a spring.
 static const char *const sliding[] = {
     "gravity=[0, 0, 0]",

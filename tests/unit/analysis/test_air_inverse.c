@@ -4,9 +4,6 @@
 #include "apps/bough/analysis/vibration.h"
 #include "tests/unit/built_scene.h"
 
-#include <math.h>
-#include <string.h>
-
 // Four segments on each blade; a tower that bends, of more states than the blades; the rotor symmetric about
 // its shaft in all but the tower.
 static const char *const symmetric[] = {

@@ -3,8 +3,6 @@
 #include "apps/bough/analysis/vibration.h"
 #include "tests/unit/built_scene.h"
 
-#include <math.h>
-
 // With tilt and tower, inflow and stall that have memory; a blade before the tower.
 static const char *const before_the_tower[] = {
     "bodies[hub].joint.angle=60 deg",

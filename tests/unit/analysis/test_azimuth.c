@@ -3,9 +3,6 @@
 #include "apps/bough/analysis/vibration.h"
 #include "tests/unit/built_scene.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { COUNT = 8 };
 
 // Six segments on each blade; a blade passes the tower at 60 degrees.

@@ -3,9 +3,6 @@
 #include "apps/bough/model/companion.h"
 #include "tests/unit/built_scene.h"
 
-#include <math.h>
-#include <stdio.h>
-
 // The nearest eigenvalue of the other scene, |λ − λ'|/|λ|.
 static double nearest(const bough_scene_mode *mode, const bough_vibration *other) {
     double least = HUGE_VAL;

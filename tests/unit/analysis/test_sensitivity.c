@@ -2,8 +2,6 @@
 #include "apps/bough/analysis/sensitivity.h"
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 enum { COUNT = 8 };
 #define STEP 0.1
 

@@ -6,7 +6,6 @@
 #include "tests/unit/built_scene.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static bough_state_space linear(bough_arena *arena, bough_simulation *s) {
     bough_state_space x;

@@ -3,8 +3,6 @@
 #include "apps/bough/analysis/vibration.h"
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 static const char pendulum[] = "apps/mechanisms/pendulum.yaml", runup[] = "apps/turbine/runup.yaml";
 
 #define COARSE_LAND "bodies[4-6].rod.segments=6"

@@ -5,8 +5,6 @@
 #include "apps/bough/model/aero_link.h"
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 static const char operation[] = "apps/turbine/land-operation.yaml";
 
 static const bough_scene *turbulent(bough_arena *arena, const char *change) {

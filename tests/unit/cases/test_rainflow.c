@@ -2,9 +2,6 @@
 
 #include "tests/unit/sample_numbers.h"
 
-#include <math.h>
-#include <string.h>
-
 static bough_rainflow counted(const double *x, int n, const double *slope, int n_slope) {
     bough_rainflow r = {.n_slope = n_slope};
     memcpy(r.slope, slope, (size_t)n_slope * sizeof *slope);

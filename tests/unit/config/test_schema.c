@@ -5,7 +5,6 @@
 #include "tests/unit/printed.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 // A small schema with every kind of key.

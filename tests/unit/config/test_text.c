@@ -5,7 +5,6 @@
 #include "tests/unit/scratch_name.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 typedef struct fixture {

@@ -4,9 +4,6 @@
 #include "cosim/whole.h"
 #include "tests/unit/sample_numbers.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { MOST = 12, MEMBERS = 4, STATES = MEMBERS * MOST, PORTS = MEMBERS * MOST };
 
 // ẏ = A y + B u, o = C y + D u

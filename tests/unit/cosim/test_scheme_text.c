@@ -2,8 +2,6 @@
 #include "cosim/scheme.h"
 #include "tests/unit/check.h"
 
-#include <string.h>
-
 // A description has the options that the scheme reads, and no others.
 TEST(schemes_are_described_by_what_they_read) {
     static const struct {

@@ -4,10 +4,7 @@
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define APPS BOUGH_SOURCE_DIR "/apps/"
 #define MOST 12

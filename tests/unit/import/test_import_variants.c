@@ -2,8 +2,6 @@
 // spellings, other generators. Each imports and steps, or is refused with its reason.
 #include "tests/unit/import_deck.h"
 
-#include <math.h>
-
 static const bough_node *body(trial *t, const char *name) {
     const bough_node *list = at(read_file(t, "scene.yaml"), "bodies");
     for (int i = 0; i < list->n; i++) {

@@ -4,8 +4,6 @@
 #include "core/base/linalg.h"
 #include "flexbody/section/section.h"
 
-#include <string.h>
-
 static bough_section_station station(double z, double mass) {
     bough_section_station s = {.position = {0, 0, z}, .mass = mass};
     const double diagonal[6] = {3e5, 4e5, 5e6, 2e4, 3e4, 1e4};

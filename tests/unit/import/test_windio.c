@@ -2,8 +2,6 @@
 // the messages for bad files; that a scene runs.
 #include "tests/unit/import.h"
 
-#include <math.h>
-
 // Imports a deck with a text replaced (NULL: none).
 static trial attempt_given(const char *deck, const edit *change, const bough_import_options *options) {
     trial t = begin_trial();

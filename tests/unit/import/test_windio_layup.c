@@ -2,8 +2,6 @@
 // layouts, sections against tubes and against the thin-walled section that they are.
 #include "tests/unit/import.h"
 
-#include <math.h>
-
 static const double pi = 3.14159265358979323846;
 
 // Replaces every place of `from` in the text of `size` bytes.

@@ -7,7 +7,6 @@
 #include "flexbody/section/section.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char runup[] = "apps/turbine/runup.yaml", arms[] = "tests/data/scenes/arms.yaml";
 

@@ -8,7 +8,6 @@
 #include "tests/unit/tree_measure.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char tip_weight[] = "tests/data/scenes/tip-weight.yaml";
 static const char mast[] = "tests/data/scenes/tower.yaml";

@@ -5,7 +5,6 @@
 #include "tests/unit/built_scene.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char example[] = "tests/data/scenes/example-turbine.yaml";
 enum { MOST = 256, STEPS = 100 };

@@ -3,8 +3,6 @@
 
 #include "apps/bough/model/control_link.h"
 
-#include <string.h>
-
 static const char turbine[] = "apps/turbine/power.yaml";
 
 #define RIGID "simulation.threads=1", "bodies[3-5].fidelity=rigid"

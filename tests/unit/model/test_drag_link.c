@@ -4,7 +4,6 @@
 #include "apps/bough/model/aero_link.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static const char turbine[] = "apps/turbine/land.yaml";
 

@@ -3,9 +3,6 @@
 
 #include "apps/bough/model/equilibrium.h"
 
-#include <math.h>
-#include <stdio.h>
-
 static const double g = 9.80665;
 
 // A channel at the start.

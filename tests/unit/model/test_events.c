@@ -1,8 +1,6 @@
 // What events make of torque, pitch and yaw: the NREL 5 MW turbine with rigid blades in steady wind.
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 static const char scene[] = "apps/turbine/power.yaml", rigid[] = "bodies[3-5].fidelity=rigid",
                   sample[] = "control.rate=50 Hz";
 static const double step = 0.02; // between samples of the control [s]

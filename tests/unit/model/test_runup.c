@@ -6,7 +6,6 @@
 #include "apps/bough/model/aero_link.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_ROWS = 2100, BLADES = 3 };
 

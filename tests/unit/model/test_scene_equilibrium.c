@@ -3,9 +3,6 @@
 #include "apps/bough/model/equilibrium.h"
 #include "tests/unit/built_scene.h"
 
-#include <stdio.h>
-#include <string.h>
-
 static const char runup[] = "apps/turbine/runup.yaml";
 
 static bough_equilibrium_work equilibrium_of(bough_simulation *s) {

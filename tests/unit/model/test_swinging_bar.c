@@ -5,7 +5,6 @@
 #include "tests/unit/built_scene.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { SEGMENTS = 16, COMPONENTS = 13, UNKNOWNS = COMPONENTS * SEGMENTS + 2 };
 

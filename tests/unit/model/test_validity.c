@@ -4,8 +4,6 @@
 
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 static const char turbine[] = "tests/data/scenes/example-turbine.yaml", roll_up[] = "apps/beams/roll-up.yaml",
                   runup[] = "apps/turbine/runup.yaml", pendulum[] = "apps/mechanisms/pendulum.yaml",
                   beam[] = "tests/data/scenes/example-beam.yaml",

@@ -2,7 +2,6 @@
 #include "apps/bough/results/recorder.h"
 #include "tests/unit/scratch.h"
 
-#include <math.h>
 #include <stdint.h>
 
 enum { CHANNELS = 4, ROWS = 41, BYTES = 4096 };

@@ -2,8 +2,6 @@
 
 #include "tests/unit/check.h"
 
-#include <string.h>
-
 static void sample_times(void *self, double t, double *value) {
     double *factor = self;
     for (int i = 0; i < 3; i++) value[i] = factor[i] * t;

@@ -5,8 +5,6 @@
 #include "apps/bough/results/frames.h"
 #include "apps/bough/results/report.h"
 
-#include <string.h>
-
 static void points(void *self, double *point) {
     const double *shift = self;
     for (int i = 0; i < 5; i++) {

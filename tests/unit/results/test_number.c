@@ -4,8 +4,6 @@
 #include "tests/unit/sample_rod.h"
 
 #include <float.h>
-#include <stdio.h>
-#include <string.h>
 
 static void check_same(double x) {
     char fast[32], slow[32];

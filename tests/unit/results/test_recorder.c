@@ -3,7 +3,6 @@
 #include "apps/bough/results/folder.h"
 #include "tests/unit/scratch.h"
 
-#include <math.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -3,8 +3,6 @@
 
 #include "apps/bough/scene/scene_internal.h"
 
-#include <string.h>
-
 static int n_example;
 
 // Reads "name: example", after the choice on which the key depends, and no other key.

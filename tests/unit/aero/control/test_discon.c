@@ -2,8 +2,6 @@
 
 #include "tests/unit/check.h"
 
-#include <string.h>
-
 typedef struct fixture {
     bough_arena *arena;
     bough_discon *discon;

@@ -1,8 +1,6 @@
 // Loads of a rotor without memory: other programs' figures, conservation, symmetry.
 #include "tests/unit/rotor_rig.h"
 
-#include <string.h>
-
 // Thrust [kN] and torque [kN m] of the flat rotor: AeroDyn v5, and to six digits an independent
 // solution of the same equations.
 TEST(flat_rotor_matches_reference) {

@@ -5,7 +5,6 @@
 #include "tests/unit/sample_numbers.h"
 
 #include <complex.h>
-#include <string.h>
 
 static const double degree = BOUGH_PI / 180;
 

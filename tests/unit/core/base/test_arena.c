@@ -3,8 +3,6 @@
 
 #include "core/base/arena.h"
 
-#include <string.h>
-
 TEST(blocks_are_aligned_zeroed_and_apart) {
     check_arena(arena);
     assert_non_null(arena);

@@ -6,7 +6,6 @@
 #include "tests/unit/sample_rod.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { W = 8, MOST = 48 };
 

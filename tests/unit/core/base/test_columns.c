@@ -4,8 +4,6 @@
 #include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"
 
-#include <math.h>
-
 enum { N = 37, COUNT = 20 }; // more than two passes of eight columns, no whole vectors
 
 static void check_level(bough_level level, int n, int count) {

@@ -4,8 +4,6 @@
 #include "core/base/base.h"
 #include "core/base/eigen.h"
 
-#include <string.h>
-
 enum { N = 40, WANTED = 10 };
 
 typedef struct chain {

@@ -4,7 +4,6 @@
 #include "core/base/linalg.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 TEST(lu_solves_with_interchanges) {
     // column-major; the first pivot is zero

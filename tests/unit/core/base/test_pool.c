@@ -4,7 +4,6 @@
 #include "tests/unit/check.h"
 
 #include <stdatomic.h>
-#include <string.h>
 #include <time.h>
 
 enum { MOST = 3000 };

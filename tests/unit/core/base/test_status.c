@@ -2,8 +2,6 @@
 #include "core/base/status.h"
 #include "tests/unit/check.h"
 
-#include <string.h>
-
 TEST(message_is_as_written) {
     bough_status status = bough_fail(BOUGH_INVALID, "rod %s: %d segments", "blade", 3);
     assert_int_equal(status.code, BOUGH_INVALID);

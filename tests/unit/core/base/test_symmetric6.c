@@ -4,8 +4,6 @@
 #include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"
 
-#include <string.h>
-
 // GᵀG + shift E of a random G.
 static void random_matrix(unsigned seed, double shift, double a[21]) {
     double g[6][6];

@@ -5,7 +5,6 @@
 #include "core/solve/integrator.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST = 4 };
 static const double unit[MOST] = {1, 1, 1, 1};

@@ -7,8 +7,6 @@
 
 #include "core/tree/force.h"
 
-#include <string.h>
-
 static void go_to(fixture *f, double t1) {
     advance(f, t1, false);
     bough_tree_kinematics(f->tree, f->m->state, f->data);

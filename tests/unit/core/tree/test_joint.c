@@ -4,8 +4,6 @@
 #include "core/base/rotation.h"
 #include "core/tree/joint.h"
 
-#include <string.h>
-
 static const bough_joint_kind kinds[] = {BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_PRISMATIC,
                                          BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,     BOUGH_JOINT_CYLINDRICAL,
                                          BOUGH_JOINT_PLANAR};

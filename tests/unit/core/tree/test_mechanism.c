@@ -8,7 +8,6 @@
 #include "tests/unit/tree_measure.h"
 
 #include <dirent.h>
-#include <string.h>
 #include <unistd.h>
 
 static void run(built *f, int steps) {

@@ -4,8 +4,6 @@
 #include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
 
-#include <string.h>
-
 static const double pi = BOUGH_PI;
 
 static bough_motion *motion_of(bough_arena *arena, bough_motion_def def, double initial) {

@@ -2,8 +2,6 @@
 // integrator, and what hangs on them feels that motion: by tables, by ramps and steered step by step.
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 static const char *const scene = "tests/data/scenes/pitching.yaml";
 
 enum { MOST = 512, HUB = 0, STEERED = 1, RAMPED = 2 };

@@ -3,8 +3,6 @@
 #include "apps/bough/model/equilibrium.h"
 #include "tests/unit/built_scene.h"
 
-#include <string.h>
-
 enum { MOST = 400 };
 
 typedef struct trace {

@@ -8,7 +8,6 @@
 #include "flexbody/section/section.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct blade {
     bough_arena *arena;

@@ -7,9 +7,6 @@
 #include "flexbody/rod/rod_load.h"
 #include "flexbody/rod/rod_static.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { STEPS = 123000 }; // of the integrals along the blade, half a millimetre each
 
 // A load per length along the blade, in its axes, constant between n + 1 places from root to tip (of the
