@@ -120,6 +120,8 @@ typedef struct bough_rotor_data {
                        // frame, j of velocities along x and y, rotation about the section's normal and
                        // its rate [N s/m, N, N s; N s, N m, N m s]
     bool skips_slopes; // of the caller: they are not wanted, and stay as they are
+    bool same_motion;  // of the caller: motion, time and wind are those of the last sample, whose `approach`
+                       // holds
     double thrust;     // along the shaft [N]
     double torque;     // about the shaft [N m]
     bough_vec3 disk_wind;     // mean of the disturbed wind over all stations [m/s]

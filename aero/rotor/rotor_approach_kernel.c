@@ -1,6 +1,8 @@
 // Stations of a blade: position, wind, induction; the kinematics of theory (86).
 #include "aero/rotor/rotor_model.h"
 
+#include <string.h>
+
 // The blade elements follow the polar formulation of the reference code (AeroDyn v5): y is
 // tangential at the element's own place, x normal to the bent but unswept, unpitched, untwisted
 // blade, and momentum is balanced over the element's projection on the rotor plane. Lift and drag
@@ -211,9 +213,15 @@ void BOUGH_AT_LEVEL(bough_rotor_induce)(const bough_rotor *rotor, const bough_ro
                                         bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     const station_rows *m = &rotor->station;
+    size_t size = (size_t)rotor->stride * sizeof(double);
     bough_elements elements = {rotor->stride, m->polar,       r->solidity,   m->tip_factor,
                                m->hub_factor, r->cone,        r->twist,      r->inflow_x,
                                r->inflow_y,   r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
-    BOUGH_AT_LEVEL(bough_induction_solve)(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
+    if (!data->same_motion) {
+        BOUGH_AT_LEVEL(bough_induction_solve)
+        (&rotor->induction, &elements, r->balanced_axial, r->balanced_tangential, r->loss);
+    }
+    memcpy(r->axial, r->balanced_axial, size);
+    memcpy(r->tangential, r->balanced_tangential, size);
     if (data->memory.station) delay(rotor, motion->time, blade, data);
 }

@@ -240,9 +240,9 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
     bough_arena_each(arena, 3 * n, &rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity, &rows->wind,
                      &rows->normal, &rows->chord);
     bough_arena_each(arena, n, &rows->pitch_rate, &rows->solidity, &rows->cone, &rows->skew_normal,
-                     &rows->skew_chord, &rows->loss, &rows->lift_slope, &rows->drag_slope,
-                     &rows->moment_slope, &rows->lift_rate, &rows->drag_rate, &rows->moment_rate,
-                     &rows->static_slope);
+                     &rows->skew_chord, &rows->loss, &rows->balanced_axial, &rows->balanced_tangential,
+                     &rows->lift_slope, &rows->drag_slope, &rows->moment_slope, &rows->lift_rate,
+                     &rows->drag_rate, &rows->moment_rate, &rows->static_slope);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
     bough_arena_each(arena, 3 * (size_t)rotor->n_vertex, &rows->rotation, &rows->bend);

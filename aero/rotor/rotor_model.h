@@ -59,6 +59,7 @@ typedef struct blade_rows {
     double *normal, *chord;  // (3 × stride) axes of the section, leading to trailing edge
     double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
     double *loss;                                       // (stride)
+    double *balanced_axial, *balanced_tangential;       // (stride) induction in balance
     double *lift_slope, *drag_slope, *moment_slope;     // (stride) by the angle [1/rad]
     double *lift_rate, *drag_rate, *moment_rate;        // (stride) by the rotation nose up [s/rad]
     double *static_slope;                               // (stride) of the static lift [1/rad]

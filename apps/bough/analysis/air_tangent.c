@@ -22,6 +22,7 @@ typedef struct work {
     int *row;                        // (n_air) of the memory
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
+    double *motion;                  // (n) the state that the air has met last; NaN: not known
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
     bough_air_mean *mean;            // that columns are added to; NULL: they are set
     double *slope;                   // (n + n_air) of a column
@@ -31,15 +32,19 @@ static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->whole->assembly->n_state, m = (size_t)w->n_memory + 1;
     w->row = bough_arena_take(arena, m * sizeof *w->row);
     bough_arena_each(arena, m, &w->memory, &w->before, &w->after, &w->air_rate[0], &w->air_rate[1]);
-    bough_arena_each(arena, n, &w->state, &w->rate[0], &w->rate[1]);
+    bough_arena_each(arena, n, &w->state, &w->motion, &w->rate[0], &w->rate[1]);
     w->slope = bough_arena_doubles(arena, n + m);
 }
 
-// Advances the air's states by `step` from `from`, which is changed, to `to`.
-static void advance_air(work *w, double step, double *from, double *to) {
+// Advances the air's states by `step` from `from`, which is changed, to `to`, where the bodies have been set
+// to `state`.
+static void advance_air(work *w, const double *state, double step, double *from, double *to) {
+    size_t size = (size_t)w->whole->assembly->n_state * sizeof *state;
+    bool moved = memcmp(w->motion, state, size) != 0;
+    memcpy(w->motion, state, size);
     from[0] = w->time - step;
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, from);
-    bough_aero_link_continue(w->simulation->aero, w->time);
+    bough_aero_link_continue(w->simulation->aero, w->time, moved);
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_SAVE, to);
 }
 
@@ -49,9 +54,9 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->whole->assembly, w->state);
     if (w->dynamic) {
-        advance_air(w, rate_time, w->before, w->after);
+        advance_air(w, w->state, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
-        advance_air(w, rate_time, w->before, w->after);
+        advance_air(w, w->state, rate_time, w->before, w->after);
         for (int k = 0; k < w->n_air; k++) {
             air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / rate_time;
         }
@@ -67,10 +72,10 @@ static void settle(work *w, const double *state) {
     bough_equilibrium_set_state(s, w->whole->assembly, state);
     bough_aero_link_hold(s->aero, w->time);
     if (!w->dynamic) return;
-    bough_aero_link_continue(s->aero, w->time);
+    bough_aero_link_continue(s->aero, w->time, false);
     bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
     for (int k = 0; k < REST_STEPS; k++) {
-        advance_air(w, rest_time, w->before, w->memory);
+        advance_air(w, state, rest_time, w->before, w->memory);
         memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
     }
 }
@@ -411,6 +416,7 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
         for (int side = 0; side < 2; side++) {
             begin_change(w, state);
             inputs->set(inputs->self, k, (2 * side - 1) * inputs->size[k], w->state);
+            w->motion[0] = (double)NAN; // the wind may change
             bough_status status = find_rates(w, w->state, w->rate[side], w->air_rate[side]);
             inputs->set(inputs->self, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
@@ -511,6 +517,7 @@ static bough_status change_by(bough_air_change *x, double factor, const double *
 
 bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_one_side, const double *change,
                                      double *image) {
+    x->w.motion[0] = (double)NAN; // others may have moved the bodies
     if (!to_one_side || !x->known) BOUGH_TRY(change_by(x, to_one_side ? 0 : -size, change, 0));
     x->known = to_one_side;
     BOUGH_TRY(change_by(x, size, change, 1));

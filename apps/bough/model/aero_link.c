@@ -207,8 +207,8 @@ typedef struct evaluation {
     bough_aero_link *link;
     const bough_rotor_motion *motion;
     bough_rotor_data *data;
-    void (*move)(bough_aero_motion *m, int blade);
-    const interval *next; // of the blades' signals; NULL: they are not set
+    void (*move)(bough_aero_motion *m, int blade); // NULL: it is that of the last evaluation of `data`
+    const interval *next;                          // of the blades' signals; NULL: they are not set
 } evaluation;
 
 // The wind that each blade meets, then its inductions.
@@ -216,6 +216,7 @@ static void approach_blade(void *self, int k) {
     const evaluation *e = self;
     const bough_aero_link *l = e->link;
     if (k < l->n_blade) {
+        if (!e->move) return;
         e->move(l->motion, k);
         bough_rotor_approach(l->rotor, e->motion, k, e->data);
         return;
@@ -238,7 +239,7 @@ static void load_blade(void *self, int k) {
                              e->next->start, e->next->span);
 }
 
-// Evaluates the rotor; `move` sets the motion of a blade.
+// Evaluates the rotor; `move` sets the motion of a blade, NULL: it has not changed.
 static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int),
                            const interval *next) {
     bough_pool *pool = l->simulation->pool;
@@ -247,6 +248,7 @@ static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_m
     l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
     l->found = to;
     e.data->skips_slopes = next == NULL; // only signals need them
+    e.data->same_motion = move == NULL;
     bough_pool_run(pool, 2 * l->n_blade, approach_blade, &e);
     bough_rotor_survey(l->rotor, e.motion, e.data);
     bough_pool_run(pool, next ? 2 * l->n_blade : l->n_blade, load_blade, &e);
@@ -276,10 +278,14 @@ static void evaluate(void *self, double t) {
 }
 
 // Keeps the present loads constant from t on.
-static void hold(bough_aero_link *l, double t) {
-    if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
+static void keep(bough_aero_link *l, double t) {
     for (int b = 0; b < l->n_blade; b++)
         bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), bough_aero_motion_course(l->motion, b), t);
+}
+
+static void hold(bough_aero_link *l, double t) {
+    if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
+    keep(l, t);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
@@ -314,16 +320,20 @@ static void begin_anew(bough_aero_link *link) {
     bough_aero_link_renew(link);
 }
 
-void bough_aero_link_continue(bough_aero_link *link, double t) {
+void bough_aero_link_continue(bough_aero_link *link, double t, bool moved) {
     begin_anew(link);
-    hold(link, t);
+    if (moved)
+        evaluate_present(link, t);
+    else
+        evaluate_rotor(link, link->shown, NULL, NULL);
+    keep(link, t);
     begin_anew(link);
     if (link->simulation->drag) bough_drag_link_hold(link->simulation->drag, t);
 }
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {
     bough_rotor_forget(link->rotor, &link->data[0]);
-    bough_aero_link_continue(link, t);
+    bough_aero_link_continue(link, t, true);
     bough_rotor_forget(link->rotor, &link->data[0]);
 }
 

@@ -18,8 +18,9 @@ bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *de
 // from t on. Dynamic inflow and stall are set to equilibrium, for this sample and before the next.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
-// The same, but dynamic inflow and stall continue from the last sample to this one and to the next.
-void bough_aero_link_continue(bough_aero_link *link, double t);
+// The same, but dynamic inflow and stall continue from the last sample to this one and to the next. `moved`
+// false: time, motion and wind are those of the last such call, whose inductions in balance hold.
+void bough_aero_link_continue(bough_aero_link *link, double t, bool moved);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);

@@ -447,6 +447,37 @@ TEST(samples_repeat_from_saved) {
     close_turbine(&f);
 }
 
+// Inductions in balance that are kept are those that are found again, where inflow and stall go on.
+TEST(memory_goes_on_alike_where_the_motion_is_known) {
+    static const char *const sets[] = {"aero.dynamic_stall=hgm", "aero.induction.inflow=oye",
+                                       "bodies[2].joint.speed=1 rad/s", NULL};
+    fixture f = open_turbine(sets);
+    bough_aero_link *aero = f.s->aero;
+    const bough_rotor *rotor = bough_aero_link_rotor(aero);
+    size_t n = (size_t)bough_rotor_memory_size(rotor);
+    int *row = calloc(n, sizeof *row), n_state = bough_rotor_memory_states(rotor, row);
+    double *before = calloc(3 * n, sizeof *before), *after = before + n;
+    signal found[2];
+    bough_aero_link_continue(aero, 0.3, true);
+    bough_aero_link_memory(aero, BOUGH_SNAPSHOT_SAVE, before);
+    before[0] = 0.25; // the time from which it goes on, away from equilibrium
+    for (int i = 0; i < n_state; i++) before[row[i]] += 0.01;
+    for (size_t k = 0; k < 2; k++) {
+        bough_aero_link_memory(aero, BOUGH_SNAPSHOT_RESTORE, before);
+        bough_aero_link_continue(aero, 0.3, k == 0);
+        bough_aero_link_memory(aero, BOUGH_SNAPSHOT_SAVE, after + k * n);
+        found[k] = signal_of(&f, FLEXIBLE);
+    }
+    assert_memory_equal(after, after + n, n * sizeof *after);
+    assert_memory_equal(found[0].value, found[1].value, sizeof found[0].value);
+    int changed = 0;
+    for (int i = 0; i < n_state; i++) changed += after[row[i]] != before[row[i]];
+    assert_true(3 * changed > n_state);
+    free(row);
+    free(before);
+    close_turbine(&f);
+}
+
 // At every time of a sample the results are those of that time, before the loads act.
 TEST(results_are_of_their_own_time) {
     static const char *const sets[] = {"bodies[2].joint.speed=1 rad/s", NULL};
