@@ -163,18 +163,30 @@ static double stale(const bough_companion *c, int i) {
     return held ? c->share_held * change_of(c, i) : 0;
 }
 
+// Whether an error is noticeable and a tenth of what the channel's is so far.
+static bool is_much(const bough_companion *c, int i, double error) {
+    double accuracy = c->run->scene->simulation.accuracy;
+    return error > 0.1 * c->error[i] && error > 0.1 * accuracy * bough_error_range(c, i) &&
+           bough_error_counts(c, i);
+}
+
 // Vibrations that are faster than the steps decay in run and companion and leave no difference, and those
-// that are faster than the samples of the air are aliased. The finer solution resolves them.
+// that are faster than the samples of the air are aliased. The finer solution resolves them, and goes on
+// while a difference grows.
 static void compare_finer(bough_companion *c) {
-    if (!bough_finer_advance(&c->finer, c->run, bough_companion_work(c))) return;
-    bool held = !bough_master_sampled(c->run->master);
+    bough_finer *f = &c->finer;
+    if (!bough_finer_advance(f, c->run, bough_companion_work(c))) return;
+    bool held = !bough_master_sampled(c->run->master), grows = false;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (held && channel->sampled) continue; // an older sample than the finer one
-        double between = fabs(difference(channel, c->value[i], c->finer.other.value[i]));
-        c->least[i] = fmax(c->least[i], bough_finer_time_share() * between);
-        if (c->error[i] < c->least[i]) c->error[i] = c->least[i];
+        double error = f->share * fabs(difference(channel, c->value[i], f->other.value[i]));
+        if (!(error > c->least[i])) continue;
+        grows = grows || is_much(c, i, error);
+        c->least[i] = error;
+        if (c->error[i] < error) c->error[i] = error;
     }
+    if (grows && !c->run->aero) bough_finer_go_on(f, c->run->master);
 }
 
 // Halves the number of rows: of two neighbours the one with the larger error is kept.

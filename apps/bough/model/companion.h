@@ -84,11 +84,12 @@ int bough_jump_times(const bough_scene *scene, double part, double *time);
 // -- the finer solution (finer.c) -----------------------------------------------------------------
 
 // A solution that is finer in time and air. It runs beside the first macro steps, and beside those after a
-// jump, until the excited vibrations have decayed in the run.
+// jump, until the excited vibrations have decayed in the run; without air, while an error grows.
 typedef struct bough_finer {
     bough_other_run other; // its simulation is NULL where the scene has none
     bool follows;          // it runs beside the run
-    double until;          // up to this time [s]
+    double from, until;    // from and up to these times [s]
+    double share;          // error of the run relative to the difference
     double work;           // so far (bough_simulation_work)
     int n_jump;
     double *jump; // (n_jump) of the jumps, in order [s]
@@ -100,6 +101,9 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
 // Advances to the time of the run and samples there. False: it does not follow the run, or cannot continue.
 // `work`: of run and companion so far, which limits its own.
 bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work);
+
+// It runs beside some more macro steps.
+void bough_finer_go_on(bough_finer *f, const bough_master *run);
 
 // Sets it to the state of the run if there is a jump within `reach` [s].
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work);

@@ -14,12 +14,17 @@ static const double little = 3e6;
 // the steps.
 static const double least_jump = 0.1;
 
+// Whether the run errs by a coupling or by fixed steps, whatever its tolerance.
+static bool errs_apart_from_tolerance(const bough_scene *scene) {
+    return bough_coarser_share(scene, scene) == 1;
+}
+
 // Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A third copy of a
 // library would write to the companion's file.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
     double rtol = fmax(scene->simulation.master.rtol, bough_scene_loosest_rtol(scene));
-    return (rtol >= tight || scene->aero.node) && !scene->control.library;
+    return (rtol >= tight || scene->aero.node || errs_apart_from_tolerance(scene)) && !scene->control.library;
 }
 
 // Stores the memory of the sampled loads of a simulation.
@@ -35,6 +40,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     if (!is_wanted(scene)) return bough_ok();
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
+    f->share = errs_apart_from_tolerance(scene) ? 1 : bough_finer_time_share();
     f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
     f->n_jump = bough_jump_times(scene, least_jump, NULL);
     f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
@@ -67,9 +73,13 @@ void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, doub
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
     if (jump > m->time + reach || is_dear(f, m, work) || !bough_master_sampled(m)) return;
-    if (!f->follows) join(f, run);
+    if (!f->follows) join(f, run), f->from = m->time;
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
+}
+
+void bough_finer_go_on(bough_finer *f, const bough_master *run) {
+    f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
 }
 
 bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work) {
@@ -90,6 +100,7 @@ void bough_finer_snapshot(bough_finer *f, bough_snapshot *s) {
     if (!f->other.simulation) return;
     bough_simulation_snapshot(f->other.simulation, s);
     bough_snapshot_take(s, &f->follows, sizeof f->follows);
+    bough_snapshot_take(s, &f->from, sizeof f->from);
     bough_snapshot_take(s, &f->until, sizeof f->until);
     bough_snapshot_take(s, &f->work, sizeof f->work);
 }
