@@ -23,21 +23,26 @@ static void run_member(void *data, int k) {
     w->work(w->whole, i);
 }
 
-bough_status bough_whole_failure(const bough_whole *whole) {
-    for (int k = 0; k < whole->assembly->n_member; k++) {
+static bough_status failure_among(const bough_whole *whole, int first, int last) {
+    for (int k = first; k < last; k++) {
         const bough_status *status = &whole->status[whole->assembly->by_role[k]];
         if (!bough_is_ok(status)) return *status;
     }
     return bough_ok();
 }
 
-// work(whole, member) for the followers, the leaders or all, in parallel; the first failure.
+bough_status bough_whole_failure(const bough_whole *whole) {
+    return failure_among(whole, 0, whole->assembly->n_member);
+}
+
+// work(whole, member) for the followers, the leaders or all, in parallel; the first failure among them: the
+// others keep that of an earlier call.
 static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole *whole, int member)) {
     const bough_assembly *a = whole->assembly;
     int first = whom == LEADERS ? a->n_follower : 0, last = whom == FOLLOWERS ? a->n_follower : a->n_member;
     member_work w = {whole, a->by_role + first, work};
     bough_pool_run(whole->pool, last - first, run_member, &w);
-    return bough_whole_failure(whole);
+    return failure_among(whole, first, last);
 }
 
 // -- evaluation -----------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 #include "cosim/whole.h"
 #include "tests/unit/two_mass.h"
 
+#include <float.h>
+
 enum { N = 4 };
 
 static void build(bough_two_mass *m, bough_whole **whole, int threads) {
@@ -48,4 +50,15 @@ TEST(rates_are_those_of_the_coupled_masses) {
     check_near(rate[1], -10 * y[0] - .2 * y[1] + force, 1e-14, 0);
     check_near(rate[2], y[3], 0, 0);
     check_near(rate[3], -20 * y[2] - .3 * y[3] - force, 1e-14, 0);
+}
+
+// A trial step may leave the range of numbers: of mass 1, which leads, by 20 N/m, of mass 2 not by 10 N/m.
+TEST(a_state_without_a_rate_does_not_spoil_the_next_one) {
+    bough_whole *whole;
+    bough_two_mass m;
+    build(&m, &whole, 1);
+    const double beyond[N] = {DBL_MAX / 15}, y[N] = {.1, -.2, .5, .3};
+    double rate[N];
+    check_fails(bough_whole_rate(whole, 0, beyond, rate), BOUGH_FAILED, "no finite rate of change");
+    check_ok(bough_whole_rate(whole, 0, y, rate));
 }
