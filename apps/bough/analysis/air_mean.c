@@ -52,8 +52,7 @@ static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int 
     return (size_t)(t->n + m->air_row[blade * m->n_air + j - m->n_row]);
 }
 
-// Entry of the four matrices as one, [A R; G H].
-static double *entry(const bough_air_tangent *t, size_t row, size_t column) {
+double *bough_air_tangent_entry(const bough_air_tangent *t, size_t row, size_t column) {
     size_t n = (size_t)t->n, m = (size_t)t->n_air;
     if (column < n) return row < n ? &t->motion[column * n + row] : &t->drive[column * m + row - n];
     return row < n ? &t->lift[(column - n) * n + row] : &t->lag[(column - n) * m + row - n];
@@ -63,13 +62,13 @@ static double *entry(const bough_air_tangent *t, size_t row, size_t column) {
 // sees.
 static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
     for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++)
-        if (m->place[i] == 0) *entry(t, i, at) += m->share * slope[i];
+        if (m->place[i] == 0) *bough_air_tangent_entry(t, i, at) += m->share * slope[i];
     for (int j = 0; j < m->n_row + m->n_air; j++) {
         for (int k = 0; k < m->n_part; k++) {
             double sum = 0;
             for (int l = 0; l < m->n_part; l++)
                 sum += m->blend[l * m->n_part + k] * slope[state_of(m, t, l, j)];
-            *entry(t, state_of(m, t, k, j), at) += m->share * sum;
+            *bough_air_tangent_entry(t, state_of(m, t, k, j), at) += m->share * sum;
         }
     }
 }
@@ -83,12 +82,13 @@ static void add_of_blade(const bough_air_mean *m, int blade, int j, const double
         if (slope[i] == 0) continue;
         if (m->place[i] > 0) {
             int to = (m->place[i] - 1) / all - blade, row = (m->place[i] - 1) % all;
-            *entry(t, state_of(m, t, to < 0 ? to + m->n_part : to, row), state_of(m, t, 0, j)) +=
-                m->share / m->n_part * slope[i];
+            *bough_air_tangent_entry(t, state_of(m, t, to < 0 ? to + m->n_part : to, row),
+                                     state_of(m, t, 0, j)) += m->share / m->n_part * slope[i];
             continue;
         }
         for (int k = 0; k < m->n_part; k++)
-            *entry(t, i, state_of(m, t, k, j)) += m->share * m->blend[blade * m->n_part + k] * slope[i];
+            *bough_air_tangent_entry(t, i, state_of(m, t, k, j)) +=
+                m->share * m->blend[blade * m->n_part + k] * slope[i];
     }
 }
 
@@ -100,8 +100,11 @@ void bough_air_mean_add(const bough_air_mean *m, int at, const double *slope, bo
         add_of_blade(m, (place - 1) / all, (place - 1) % all, slope, t);
 }
 
-void bough_air_mean_add_own(const bough_air_mean *m, int i, int j, double slope, bough_air_tangent *t) {
-    *entry(t, state_of(m, t, 0, i), state_of(m, t, 0, j)) += m->share * slope;
+void bough_air_mean_add_own(const bough_air_mean *m, const int *column, const double *slope,
+                            bough_air_tangent *t) {
+    for (int i = 0; i < m->n_row + m->n_air; i++)
+        *bough_air_tangent_entry(t, state_of(m, t, 0, i), state_of(m, t, 0, column[i])) +=
+            m->share / m->n_part * slope[i];
 }
 
 void bough_air_mean_negate(bough_air_mean *m) { m->share = -m->share; }
@@ -112,9 +115,10 @@ static void repeat(const bough_air_mean *m, bough_air_tangent *t) {
     for (int j = 0; j < all; j++) {
         for (int k = 0; k < m->n_part; k++) {
             for (int i = 0; i < all; i++) {
-                double value = *entry(t, state_of(m, t, k, i), state_of(m, t, 0, j));
+                double value = *bough_air_tangent_entry(t, state_of(m, t, k, i), state_of(m, t, 0, j));
                 for (int l = 1; l < m->n_part && value != 0; l++)
-                    *entry(t, state_of(m, t, (k + l) % m->n_part, i), state_of(m, t, l, j)) = value;
+                    *bough_air_tangent_entry(t, state_of(m, t, (k + l) % m->n_part, i),
+                                             state_of(m, t, l, j)) = value;
             }
         }
     }

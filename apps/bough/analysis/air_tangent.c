@@ -103,27 +103,31 @@ static bool meets_air(const bough_simulation *s, int member) {
     return false;
 }
 
-// Stores the slopes in the work as the column of a state of the members or of the air.
-static void put_column(const work *w, bool of_air, int at, bough_air_tangent *t) {
-    size_t n = (size_t)t->n, n_air = (size_t)t->n_air, column = (size_t)at;
+// Stores the slopes in the work as the column of a state, of the members and then of the air.
+static void put_column(const work *w, int at, bough_air_tangent *t) {
+    size_t n = (size_t)t->n, column = (size_t)at;
     if (w->mean) {
-        bough_air_mean_add(w->mean, of_air ? t->n + at : at, w->slope, t);
+        bough_air_mean_add(w->mean, at, w->slope, t);
         return;
     }
-    memcpy((of_air ? t->lift : t->motion) + column * n, w->slope, n * sizeof(double));
-    memcpy((of_air ? t->lag : t->drive) + column * n_air, w->slope + n, n_air * sizeof(double));
+    memcpy(bough_air_tangent_entry(t, 0, column), w->slope, n * sizeof(double));
+    memcpy(bough_air_tangent_entry(t, n, column), w->slope + n, (size_t)t->n_air * sizeof(double));
 }
 
-static bough_status follow_state(work *w, const double *state, bool of_air, int at, double size,
-                                 bough_air_tangent *t) {
-    begin_change(w, state);
-    if (of_air)
-        w->before[w->row[at]] += size;
-    else
+static void change(work *w, int at, double size) {
+    int n = w->whole->assembly->n_state;
+    if (at < n)
         w->state[at] += size;
+    else
+        w->before[w->row[at - n]] += size;
+}
+
+static bough_status follow_state(work *w, const double *state, int at, double size, bough_air_tangent *t) {
+    begin_change(w, state);
+    change(w, at, size);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
     set_column(w, size, w->slope, w->slope + t->n);
-    put_column(w, of_air, at, t);
+    put_column(w, at, t);
     return bough_ok();
 }
 
@@ -133,8 +137,7 @@ static bough_status follow_member(work *w, const double *state, int member, boug
     const bough_assembly *a = w->whole->assembly;
     const bough_system *system = &a->member[member]->system;
     for (int k = 0; k < system->n_state; k++)
-        BOUGH_TRY(
-            follow_state(w, state, false, a->state_offset[member] + k, difference * system->scale[k], t));
+        BOUGH_TRY(follow_state(w, state, a->state_offset[member] + k, difference * system->scale[k], t));
     return bough_ok();
 }
 
@@ -148,25 +151,21 @@ typedef struct blades {
     work *w;
     const bough_blade_group *group;
     int n_row, n_air, n_all; // of a blade
-    int *air_row;            // (n_part × n_air)
+    int *at;                 // (n_part × n_all) rows of them among the members' and then the air's
     double *place, *reach;   // (n_all); how far from it loads change
     double *size;            // (n_all) of differences
     int *nearest;            // (n_all) of the states changed at once
-    double *own;             // (n_all) slopes of a blade's rates by these, their mean over the blades
+    double *changed;         // (n + n_air) rates less those of the state itself
+    double *own;             // (n_all) slopes of a blade's rates by these, sums over the blades
     double *check;           // (n_part × n_all) by how much `check` changes the states
     double *expected;        // (n + n_air) rates by the tangent for these changes
-    double *other;           // (n) 1 over the scale of a member's state; 0: a blade's
+    double *other, *blade;   // (n) 1 over the scale of a state; 0: of a blade's, or of the others
     int *number;             // (n_part) of each blade among the rotor's
     size_t n_load;           // of a copy of a blade's loads
     double *load[2];         // (n_part × n_load) of the state itself, of a changed one
 } blades;
 
 static bool is_of_air(const blades *b, int j) { return j >= b->n_row; }
-
-static int row_of(const blades *b, int blade, int j) {
-    return is_of_air(b, j) ? b->air_row[blade * b->n_air + j - b->n_row]
-                           : b->group->row[blade * b->n_row + j];
-}
 
 // Places of spans between stations.
 static double place_of(const bough_scene_aero_blade *aero, double span) {
@@ -206,12 +205,17 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     size_t all = (size_t)b.n_all + 1, parts = (size_t)group->n;
     int n = w->whole->assembly->n_state;
     double *scale = b.other = bough_arena_doubles(arena, (size_t)n);
+    b.blade = bough_arena_doubles(arena, (size_t)n);
     bough_arena_each(arena, all, &b.place, &b.reach, &b.size, &b.own);
     b.nearest = bough_arena_take(arena, all * sizeof *b.nearest);
     b.check = bough_arena_doubles(arena, parts * all);
-    b.expected = bough_arena_doubles(arena, (size_t)(n + w->n_air) + 1);
-    b.air_row = bough_arena_take(arena, (parts * (size_t)n_air + 1) * sizeof *b.air_row);
-    bough_air_tangent_rows(s, group, n_air, b.air_row);
+    bough_arena_each(arena, (size_t)(n + w->n_air) + 1, &b.expected, &b.changed);
+    b.at = bough_arena_take(arena, parts * all * sizeof *b.at);
+    int *air = bough_arena_take(arena, (parts * (size_t)n_air + 1) * sizeof *air);
+    bough_air_tangent_rows(s, group, n_air, air);
+    for (int k = 0; k < group->n; k++)
+        for (int j = 0; j < b.n_all; j++)
+            b.at[k * b.n_all + j] = j < n_row ? group->row[k * n_row + j] : n + air[k * n_air + j - n_row];
     b.number = bough_arena_take(arena, parts * sizeof *b.number);
     bough_air_tangent_rows(s, group, 1, b.number);
     b.n_load = (size_t)bough_aero_link_loads_size(s->aero, b.number[0]);
@@ -223,38 +227,28 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     for (int k = 0; k < group->n; k++)
         for (int j = 0; j < b.n_all; j++) b.check[k * b.n_all + j] = b.size[j] * sin(1 + 7.3 * j + 3.1 * k);
     for (int i = 0; i < n; i++) b.other[i] = 1 / b.other[i];
-    for (int i = 0; i < group->n * n_row; i++) b.other[group->row[i]] = 0;
+    for (int i = 0; i < group->n * n_row; i++) {
+        b.blade[group->row[i]] = b.other[group->row[i]];
+        b.other[group->row[i]] = 0;
+    }
     set_places(&b);
     return b;
 }
 
-static void change(const blades *b, int blade, int j, double size) {
-    int at = row_of(b, blade, j);
-    if (is_of_air(b, j))
-        b->w->before[b->w->row[at]] += size;
-    else
-        b->w->state[at] += size;
-}
-
-static double rate_change(const blades *b, int blade, int j) {
-    const work *w = b->w;
-    int at = row_of(b, blade, j);
-    return is_of_air(b, j) ? w->air_rate[1][at] - w->air_rate[0][at] : w->rate[1][at] - w->rate[0][at];
+static void find_changes(blades *b) {
+    set_column(b->w, 1, b->changed, b->changed + b->w->whole->assembly->n_state);
 }
 
 // Slopes of a blade's rates by its own state nearest to them.
 static void add_own(blades *b, int blade, bough_air_tangent *t) {
-    const work *w = b->w;
+    const int *at = b->at + blade * b->n_all;
+    const double *check = b->check + blade * b->n_all;
     for (int i = 0; i < b->n_all; i++) {
         int j = b->nearest[i];
-        size_t column = (size_t)row_of(b, blade, j), row = (size_t)row_of(b, blade, i);
-        double slope = rate_change(b, blade, i) / b->size[j];
-        b->expected[(is_of_air(b, i) ? (size_t)t->n : 0) + row] += b->check[blade * b->n_all + j] * slope;
-        b->own[i] += slope / b->group->n;
-        if (w->mean) continue;
-        double *of_body = (is_of_air(b, j) ? t->lift : t->motion) + column * (size_t)t->n;
-        double *of_air = (is_of_air(b, j) ? t->lag : t->drive) + column * (size_t)t->n_air;
-        (is_of_air(b, i) ? of_air : of_body)[row] = slope;
+        double slope = b->changed[at[i]] / b->size[j];
+        b->expected[at[i]] += check[j] * slope;
+        b->own[i] += slope;
+        if (!b->w->mean) *bough_air_tangent_entry(t, (size_t)at[i], (size_t)at[j]) = slope;
     }
 }
 
@@ -273,13 +267,13 @@ static void set_nearest(blades *b, int n, const int *some) {
 static const double carried = 1e-8;
 
 static bool moves_blades_only(const blades *b) {
-    const work *w = b->w;
     double blade = 0, other = 0;
-    for (int i = 0; i < w->whole->assembly->n_state; i++)
-        other = fmax(other, b->other[i] * fabs(w->rate[1][i] - w->rate[0][i]));
-    for (int k = 0; k < b->group->n; k++)
-        for (int j = 0; j < b->n_row; j++)
-            blade = fmax(blade, fabs(rate_change(b, k, j)) * difference / b->size[j]);
+#pragma omp simd reduction(max : blade, other)
+    for (int i = 0; i < b->w->whole->assembly->n_state; i++) {
+        double size = fabs(b->changed[i]), of_blade = b->blade[i] * size, of_other = b->other[i] * size;
+        blade = of_blade > blade ? of_blade : blade;
+        other = of_other > other ? of_other : other;
+    }
     return other <= carried * blade;
 }
 
@@ -293,9 +287,9 @@ static bough_status follow_loads(const blades *b, const double *state, int blade
                               b->load[k == blade] + (size_t)k * b->n_load);
     BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[1]));
     set_column(w, b->size[j], w->slope, w->slope + t->n);
-    for (int i = 0; i < b->n_row; i++) w->slope[row_of(b, blade, i)] = 0;
+    for (int i = 0; i < b->n_row; i++) w->slope[b->at[blade * b->n_all + i]] = 0;
     memset(w->slope + t->n, 0, (size_t)t->n_air * sizeof(double));
-    put_column(w, is_of_air(b, j), row_of(b, blade, j), t);
+    put_column(w, b->at[blade * b->n_all + j], t);
     for (int r = 0; r < t->n; r++) b->expected[r] += b->check[blade * b->n_all + j] * w->slope[r];
     return bough_ok();
 }
@@ -307,18 +301,19 @@ static bough_status follow_some(blades *b, const double *state, int n, const int
     work *w = b->w;
     begin_change(w, state);
     for (int k = 0; k < b->group->n; k++)
-        for (int i = 0; i < n; i++) change(b, k, some[i], b->size[some[i]]);
+        for (int i = 0; i < n; i++) change(w, b->at[k * b->n_all + some[i]], b->size[some[i]]);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+    find_changes(b);
     bool at_root = !moves_blades_only(b);
     if (at_root) keep_loads(b, 1);
     set_nearest(b, n, some);
     memset(b->own, 0, (size_t)b->n_all * sizeof *b->own);
     for (int k = 0; k < b->group->n; k++) {
         if (at_root) BOUGH_TRY(follow_loads(b, state, k, some[0], t));
+        if (at_root) find_changes(b);
         add_own(b, k, t);
     }
-    for (int i = 0; i < b->n_all && w->mean; i++)
-        bough_air_mean_add_own(w->mean, i, b->nearest[i], b->own[i], t);
+    if (w->mean) bough_air_mean_add_own(w->mean, b->nearest, b->own, t);
     return bough_ok();
 }
 
@@ -357,18 +352,19 @@ static bough_status follow_blades(bough_arena *arena, blades *b, const double *s
 static const double disk = 1e-3;
 
 // Whether the tangent gives the rates that a change of all states of the blades and their air causes.
-static bough_status check(const blades *b, const double *state, bool *good) {
+static bough_status check(blades *b, const double *state, bool *good) {
     work *w = b->w;
     double miss = 0, size = 0;
-    const double *air = b->expected + w->whole->assembly->n_state;
     begin_change(w, state);
     for (int k = 0; k < b->group->n; k++)
-        for (int j = 0; j < b->n_all; j++) change(b, k, j, b->check[k * b->n_all + j]);
+        for (int j = 0; j < b->n_all; j++) change(w, b->at[k * b->n_all + j], b->check[k * b->n_all + j]);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
+    find_changes(b);
     for (int k = 0; k < b->group->n; k++) {
         for (int j = 0; j < b->n_all; j++) {
-            double own = rate_change(b, k, j), unit = is_of_air(b, j) ? 1 : b->size[j] / difference;
-            miss = fmax(miss, fabs(own - (is_of_air(b, j) ? air : b->expected)[row_of(b, k, j)]) / unit);
+            int at = b->at[k * b->n_all + j];
+            double own = b->changed[at], unit = is_of_air(b, j) ? 1 : b->size[j] / difference;
+            miss = fmax(miss, fabs(own - b->expected[at]) / unit);
             size = fmax(size, fabs(own) / unit);
         }
     }
@@ -405,7 +401,7 @@ static bough_status follow_others(work *w, const double *state, const bough_blad
         BOUGH_TRY(follow_member(w, state, i, t));
     }
     for (int k = 0; k < w->n_air && !found; k++)
-        BOUGH_TRY(follow_state(w, state, true, k, air_difference, t));
+        BOUGH_TRY(follow_state(w, state, a->n_state + k, air_difference, t));
     return bough_ok();
 }
 

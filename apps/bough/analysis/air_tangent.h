@@ -25,6 +25,9 @@ typedef struct bough_air_tangent {
     double *input_drive; // K (n_air × n_input)
 } bough_air_tangent;
 
+// Entry of the four matrices as one, [A R; G H].
+double *bough_air_tangent_entry(const bough_air_tangent *tangent, size_t row, size_t column);
+
 // Inputs of the scene.
 typedef struct bough_air_inputs {
     int n;
@@ -81,9 +84,9 @@ bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimut
 // Adds the slopes (n + n_air) by a state, `at` among those of the members and then of the air.
 void bough_air_mean_add(const bough_air_mean *mean, int at, const double *slope, bough_air_tangent *tangent);
 
-// Adds the slope of a blade's i-th rate by its j-th state, its own and then its air's, in the mean over the
-// blades.
-void bough_air_mean_add_own(const bough_air_mean *mean, int i, int j, double slope,
+// Adds the slopes of a blade's rates, its own and then its air's, by one of its states each, `column`; sums
+// over the blades, of which the mean enters.
+void bough_air_mean_add_own(const bough_air_mean *mean, const int *column, const double *slope,
                             bough_air_tangent *tangent);
 
 // Switches the sign of what is added from now on.
