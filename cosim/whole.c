@@ -189,6 +189,12 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 // The coordinates are those of the solution before until a leader is solved: others may still respond to it.
 void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
+static bool is_zero(int n, const double *x) {
+    for (int i = 0; i < n; i++)
+        if (x[i] != 0) return false;
+    return true;
+}
+
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held. A member whose states are
 // coordinates of the interface hands over r_i instead: the interface solves for them.
 void bough_whole_solve_of(bough_whole *whole, int i) {
@@ -197,13 +203,15 @@ void bough_whole_solve_of(bough_whole *whole, int i) {
     const bough_interface_member *part = &whole->interface->part[i];
     double *x = whole->x + a->state_offset[i], *moved = whole->output_change + a->output_offset[i];
     double *coordinate = whole->interface->coordinate + part->first;
+    if (part->is_leader) memset(coordinate, 0, (size_t)part->n * sizeof(double));
     if (part->by_state) {
         memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
         memset(x, 0, (size_t)s->n_state * sizeof(double));
+    }
+    if (is_zero(s->n_state, x)) { // as of all members but one in a column of the inverse
         memset(moved, 0, (size_t)s->n_output * sizeof(double));
         return;
     }
-    if (part->is_leader) memset(coordinate, 0, (size_t)part->n * sizeof(double));
     bough_operating_point at = operating_point(whole, i);
     bough_interface_solve_member(whole->interface, i, x);
     bough_interface_output_change(whole->interface, i, &at, x, NULL, moved);
