@@ -296,6 +296,12 @@ void bough_validity_check(bough_simulation *s) {
     check_speed(s);
 }
 
+static bool is_driven(const bough_tree *tree) {
+    bool driven = false;
+    for (int i = 0; i < tree->n_links; i++) driven = driven || tree->links[i].motion != NULL;
+    return driven;
+}
+
 bough_status bough_validity_check_closed(bough_simulation *s) {
     int closure = 0;
     if (s->tree->n_closures == 0) return bough_ok();
@@ -304,9 +310,10 @@ bough_status bough_validity_check_closed(bough_simulation *s) {
     if (opening <= most_open) return bough_ok();
     return bough_fail(
         BOUGH_FAILED,
-        "closure '%s' at %.6g s under scheme %s: its loop is open by %.2g of its size. A loop with a body that is much lighter than the others may not stay closed: give that body more mass and inertia",
+        "closure '%s' at %.6g s under scheme %s: its loop is open by %.2g of its size: %sthe steps are too long (try a smaller rtol or macro_step), or one of its bodies is much lighter than the others and needs more mass and inertia",
         s->scene->closure[closure].name, s->master->time,
-        bough_scheme_name(s->scene->simulation.coupling.scheme), opening);
+        bough_scheme_name(s->scene->simulation.coupling.scheme), opening,
+        is_driven(s->tree) ? "it cannot follow the motion that a joint prescribes, or " : "");
 }
 
 // -- work -----------------------------------------------------------------------------------------
