@@ -89,12 +89,13 @@ static int slower(const void *a, const void *b) {
 
 // The reduced system: the members in the subspace of their modes, and all states of the air, theory (100).
 typedef struct reduced {
-    int r, all;           // modes as real columns; with the states of the air
-    double *right, *left; // U (n × r), L (r × n), L U = E
-    double *matrix;       // (all × all)
-    double *rest;         // (n × m) γ T⁻¹ P (E − U L) R: the modes left out by the air's states
-    double *factor;       // (all × all) of E − γ matrix
-    int *pivot;           // (all)
+    int r, all;               // modes as real columns; with the states of the air
+    double *right, *left;     // U (n × r), L (r × n), L U = E
+    double *real, *imaginary; // (r) of the eigenvalues of U, of a pair's second column the conjugate's
+    double *matrix;           // (all × all)
+    double *rest;             // (n × m) γ T⁻¹ P (E − U L) R: the modes left out by the air's states
+    double *factor;           // (all × all) of E − γ matrix
+    int *pivot;               // (all)
     double *value, *vector, *inverse; // (2 × all), (all × all): of the matrix of its vectors
 } reduced;
 
@@ -116,6 +117,8 @@ static void collect(const work *w, int n_right, const bough_eigen_pair *right, i
         const bough_eigen_pair *other = partner(&right[i], n_left, left);
         if (other == NULL) continue;
         for (int part = 0; part < 1 + (right[i].imaginary > 0); part++) {
+            x->real[x->r] = right[i].real;
+            x->imaginary[x->r] = (part == 0 ? 1 : -1) * right[i].imaginary;
             size_t at = (size_t)x->r++ * n;
             memcpy(x->right + at, part == 0 ? right[i].shape_real : right[i].shape_imag, bytes);
             memcpy(of_left + at, part == 0 ? other->shape_real : other->shape_imag, bytes);
@@ -137,23 +140,14 @@ static bool orthogonalise(bough_arena *arena, const work *w, const double *of_le
     return true;
 }
 
-// The first block: γ⁻¹ (E − (L T⁻¹ P U)⁻¹)
-static bool set_motion(bough_arena *arena, work *w, reduced *x) {
-    size_t n = (size_t)w->n, r = (size_t)x->r;
-    double *image = bough_arena_doubles(arena, n * r), *small = bough_arena_doubles(arena, r * r);
-    double *column = bough_arena_doubles(arena, r);
-    int *pivot = bough_arena_take(arena, r * sizeof *pivot);
-    apply(w, x->r, x->right, image);
-    bough_dense_product((bough_product){x->r, x->r, w->n, false, 1, 0}, x->left, image, small);
-    if (!bough_dense_factor(x->r, small, pivot)) return false;
-    for (size_t j = 0; j < r; j++) {
-        memset(column, 0, r * sizeof *column);
-        column[j] = 1;
-        bough_dense_solve(x->r, 1, small, pivot, column);
-        double *to = x->matrix + j * (size_t)x->all;
-        for (size_t i = 0; i < r; i++) to[i] = w->system->def->point * ((i == j) - column[i]);
+// The first block: L (J − S + A) U
+static void set_motion(reduced *x) {
+    size_t all = (size_t)x->all;
+    for (size_t j = 0; j < (size_t)x->r; j++) {
+        x->matrix[j * all + j] = x->real[j];
+        if (x->imaginary[j] > 0) x->matrix[j * all + j + 1] = -x->imaginary[j];
+        if (x->imaginary[j] < 0) x->matrix[j * all + j - 1] = -x->imaginary[j];
     }
-    return true;
 }
 
 // rest ← γ T⁻¹ P (E − U L) rest, the static response of the neglected modes to forces R = rest (n × columns);
@@ -213,13 +207,15 @@ static bool reduce(bough_arena *arena, work *w, int n_right, const bough_eigen_p
     size_t columns = 2 * (size_t)n_right + 1;
     x->right = bough_arena_doubles(arena, (size_t)w->n * columns);
     double *of_left = bough_arena_doubles(arena, (size_t)w->n * columns);
+    bough_arena_each(arena, columns, &x->real, &x->imaginary);
     collect(w, n_right, right, n_left, left, of_left, x);
     x->left = bough_arena_doubles(arena, (size_t)w->n * (size_t)x->r);
     x->all = x->r + w->m;
     size_t all = (size_t)x->all;
     bough_arena_each(arena, all * all, &x->matrix, &x->vector, &x->inverse);
     x->value = bough_arena_doubles(arena, 2 * all);
-    if (!orthogonalise(arena, w, of_left, x) || !set_motion(arena, w, x)) return false;
+    if (!orthogonalise(arena, w, of_left, x)) return false;
+    set_motion(x);
     set_air(arena, w, x);
     if (w->system->def->spin != 0) turn_air(arena, w, x);
     return true;
