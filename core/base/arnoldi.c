@@ -130,7 +130,6 @@ double bough_arnoldi_residual(const bough_arnoldi *a, int k) {
     return sqrt(sum);
 }
 
-void bough_arnoldi_combine(const bough_arnoldi *a, int column, int n, double *x) {
-    bough_dense_product((bough_product){a->length, n, a->done, false, 1, 0}, a->basis,
-                        a->vector + (size_t)column * (size_t)a->done, x);
+void bough_arnoldi_combine(const bough_arnoldi *a, int n, const double *y, double *x) {
+    bough_dense_product((bough_product){a->length, n, a->done, false, 1, 0}, a->basis, y, x);
 }

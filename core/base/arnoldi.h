@@ -51,7 +51,7 @@ double bough_arnoldi_modulus(const bough_arnoldi *a, int k);
 // real vector k, or of the pair k, k + 1.
 double bough_arnoldi_residual(const bough_arnoldi *a, int k);
 
-// x (n × length) ← Σ y_k q_k over the vectors done, for n columns y of `vector` from `column` on.
-void bough_arnoldi_combine(const bough_arnoldi *a, int column, int n, double *x);
+// x (n × length) ← Σ y_k q_k over the vectors done, for y (n × done).
+void bough_arnoldi_combine(const bough_arnoldi *a, int n, const double *y, double *x);
 
 #endif

@@ -145,15 +145,27 @@ double bough_eigen_residual(const bough_eigen_operator *op, double real, double 
     return sqrt(sum / size) / hypot(real, imaginary);
 }
 
-// Of 1/μ it is μ's conjugate partner that has the positive imaginary part. x, y (2 × length): work.
+// The vectors of the chosen values, real before imaginary part (n × 2 × length).
+static double *combine(bough_arena *arena, const bough_arnoldi *a, int n, const int *chosen) {
+    size_t done = (size_t)a->done, columns = 2 * (size_t)n + 1;
+    double *x = bough_arena_doubles(arena, columns * (size_t)a->length);
+    double *y = bough_arena_doubles(arena, columns * done);
+    for (size_t i = 0; i < (size_t)n; i++) {
+        size_t k = (size_t)chosen[i], parts = a->value[done + k] != 0 ? 2 : 1;
+        memcpy(y + 2 * i * done, a->vector + k * done, parts * done * sizeof *y);
+    }
+    bough_arnoldi_combine(a, 2 * n, y, x);
+    return x;
+}
+
+// Of 1/μ it is μ's conjugate partner that has the positive imaginary part. x (2 × length): its vector; y
+// (2 × length): work.
 static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_pair *pair) {
     const bough_eigen_operator *op = s->op;
     size_t n = (size_t)op->length, bytes = (size_t)op->n_shape * sizeof(double);
     eigenvalue(s, k, &pair->real, &pair->imaginary);
-    memset(x, 0, 2 * n * sizeof *x);
     memset(y, 0, 2 * n * sizeof *y);
     bool oscillates = s->basis.value[s->basis.done + k] != 0;
-    bough_arnoldi_combine(&s->basis, k, 1 + oscillates, x);
     for (int part = 0; part <= oscillates; part++) {
         double *own = x + (size_t)part * n;
         for (size_t i = 0; i < n && part == 1 && op->gamma == 0; i++) own[i] *= -1;
@@ -188,8 +200,9 @@ static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_ei
                           op->name, wanted, accuracy);
     }
     take_shapes(arena, op->n_shape, pair, *found);
-    double *x = bough_arena_doubles(own, 4 * (size_t)op->length), *y = x + 2 * (size_t)op->length;
-    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], x, y, &pair[i]);
+    size_t length = 2 * (size_t)op->length;
+    double *x = combine(own, &s.basis, *found, chosen), *y = bough_arena_doubles(own, length);
+    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], x + (size_t)i * length, y, &pair[i]);
     return bough_ok();
 }
 

@@ -215,7 +215,7 @@ static bough_status refine(map *m, const ritz *r, bough_stability *result) {
     const bough_arnoldi *basis = &m->arnoldi;
     double *real = m->pair, *imaginary = m->pair + m->n, *image = m->arnoldi.image;
     memset(m->pair, 0, 2 * (size_t)m->n * sizeof(double));
-    bough_arnoldi_combine(basis, r->column, r->pair ? 2 : 1, m->pair);
+    bough_arnoldi_combine(basis, r->pair ? 2 : 1, basis->vector + r->column * basis->done, m->pair);
     BOUGH_TRY(apply(m, 1, real, image));
     double a = bough_arnoldi_product(basis, real, image);
     double b = -bough_arnoldi_product(basis, imaginary, image);
