@@ -18,7 +18,7 @@ enum { MANY_STEPS = 100 };           // in a macro step: beside as many the star
 enum { FIRST_WAIT = 2, LONGER = 3 }; // macro steps before the first trial; factor of each further wait
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
 static const double tighter = 0.1;   // tolerance of IDA, relative: its errors add up over many short steps
-static const double cheaper = 0.7;   // cost of a method that takes over, relative
+static const double cheaper = 0.7;   // cost of a method that takes over from IDA, relative
 
 typedef struct automatic {
     int n, n_method;
@@ -28,7 +28,8 @@ typedef struct automatic {
     bool goes_on;            // it can go on without a start
     double cost;             // its cost per time there; 0: few steps of the Rosenbrock method [1/s]
     double lost;             // cost of the Rosenbrock method when no other was cheaper [1/s]
-    int taken, wait;         // macro steps by `now` in a row; how many before the others are tried
+    int taken, wait;         // macro steps by `now` in a row; how many before another is tried
+    int tried;               // the last of these
     double *kept;            // (n) state before a trial
 } automatic;
 
@@ -76,7 +77,8 @@ static bough_status take(automatic *m, int k, double *t, double t1, bool restart
 static bool try_other(automatic *m, int k, double *t, double t1, double *y) {
     const bough_integrator *x = &m->method[k];
     const automatic present = *m;
-    double begun = *t, most = cheaper * m->cost * (t1 - begun); // evaluations
+    double begun = *t, most = m->cost * (t1 - begun); // evaluations
+    if (m->now != ROSENBROCK) most *= cheaper;
     size_t size = (size_t)m->n * sizeof *y;
     memcpy(m->kept, y, size);
     x->ops->limit(x->self, (int)fmin(k == ROSENBROCK ? most / 4 : most, m->most_steps[k]));
@@ -90,15 +92,13 @@ static bool try_other(automatic *m, int k, double *t, double t1, double *y) {
     return false;
 }
 
-// The Rosenbrock method last.
-static bool try_others(automatic *m, double *t, double t1, double *y) {
-    bool taken = false;
-    int now = m->now;
-    for (int i = 1; i <= METHODS && !taken; i++) {
-        int k = i % METHODS;
-        taken = k != now && k < m->n_method && try_other(m, k, t, t1, y);
-    }
-    if (now != ROSENBROCK) m->wait *= LONGER;
+// One after another, beside IDA; beside the Rosenbrock method IDA.
+static bool try_next(automatic *m, double *t, double t1, double *y) {
+    bool by_ida = m->now != ROSENBROCK;
+    if (by_ida) m->wait *= LONGER;
+    m->tried = by_ida ? (m->tried + 1) % METHODS : IDA;
+    if (m->tried == m->now) m->tried = (m->tried + 1) % METHODS;
+    bool taken = try_other(m, m->tried, t, t1, y);
     if (m->now == ROSENBROCK) m->lost = m->cost;
     if (!taken) m->taken = 0;
     return taken;
@@ -117,14 +117,13 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
         m->cost = m->lost = 0;
         m->wait = FIRST_WAIT;
     }
-    if (is_due(m) && try_others(m, t, t1, y)) return bough_ok();
-    double begun = *t;
-    int now = m->now;
-    bough_status first = take(m, now, t, t1, !m->goes_on, y), status = first;
+    if (is_due(m) && try_next(m, t, t1, y)) return bough_ok();
+    bough_status first = take(m, m->now, t, t1, !m->goes_on, y);
+    if (bough_is_ok(&first) || m->now != ROSENBROCK) return first;
     // where it stops, IDA from there on
-    for (int k = IDA; !bough_is_ok(&status) && k < m->n_method; k++)
-        if (k != now) status = take(m, k, t, t1, true, y);
-    return bough_is_ok(&status) || *t > begun ? status : first;
+    double begun = *t;
+    bough_status second = take(m, IDA, t, t1, true, y);
+    return bough_is_ok(&second) || *t > begun ? second : first;
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
