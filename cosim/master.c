@@ -97,14 +97,15 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 
 bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
-enum { HALVED_EVERY = 8, FIRST = 64 }; // macro steps
+enum { BLOCK = 4, FIRST = 64 }; // macro steps
 
 // If all of the first steps were halved, they would be those of the run that this one is compared with,
-// theory (71), wherever that takes one step in each of its macro steps.
+// theory (71), wherever that takes one step in each of its macro steps. Halved ones follow each other,
+// because every change of the step takes new factors.
 static bool taken_in_halves(const bough_master *m) {
     if (!m->halves || m->split) return m->halves;
-    if (m->grid_index >= FIRST) return m->at_event || m->grid_index % HALVED_EVERY == 0;
-    return m->at_event || m->grid_index % 2 == 0 || m->many_steps;
+    if (m->grid_index >= FIRST) return m->at_event || m->grid_index % (8 * BLOCK) < BLOCK;
+    return m->at_event || m->grid_index % (2 * BLOCK) < BLOCK || m->many_steps;
 }
 
 // By multiplication, so that the grid does not drift.

@@ -33,8 +33,9 @@ TEST(steps_end_on_events_and_on_the_duration) {
     assert_true(bough_master_done(m.master));
 }
 
-// Halves among the first 64 steps of .01 `scale` s of a run of a hundred, and after them.
-static int count_halves(double scale, int *later) {
+// Halves among the first 64 steps of .01 `scale` s of a run of a hundred, and after them; changes of length.
+static int count_halves(double scale, int *later, int *changes) {
+    double last = 0;
     const double event[] = {.703 * scale}, h = .005 * scale;
     int halves = 0;
     bough_master_def def = definition(.01 * scale, scale);
@@ -43,8 +44,12 @@ static int count_halves(double scale, int *later) {
     def.n_event = 1;
     bough_two_mass m = bough_two_mass_default();
     check_ok(bough_two_mass_build(check_memory(), &m, def));
-    for (*later = 0; !bough_master_done(m.master);) {
+    *later = *changes = 0;
+    while (!bough_master_done(m.master)) {
+        double begun = m.master->time;
         check_ok(bough_step(m.master));
+        *changes += fabs(m.master->time - begun - last) > 0.1 * h;
+        last = m.master->time - begun;
         double half = m.master->time / h;
         bool between = fabs(half / 2 - round(half / 2)) > 1e-6;
         if (!between || fabs(half * h - event[0]) < 1e-6 * scale) continue;
@@ -55,16 +60,17 @@ static int count_halves(double scale, int *later) {
     return halves;
 }
 
-// Every second of the first 64, all where members take several steps in each, every eighth later, and the one
-// after an event before its middle; at the times of a run of half the steps.
+// Four of every eight of the first 64, all where members take several steps in each, four of every 32 later,
+// and the one after an event before its middle; at the times of a run of half the steps.
 TEST(some_steps_are_taken_in_halves) {
-    int later;
-    int few = count_halves(0.1, &later);
-    print_message("%d of the first, %d later\n", few, later);
+    int later, changes;
+    int few = count_halves(0.1, &later, &changes);
+    print_message("%d of the first, %d later, %d changes\n", few, later, changes);
     assert_true(few >= 32 && few <= 36);
-    assert_int_equal(later, 6);
-    assert_int_equal(count_halves(100, &later), 64);
-    assert_int_equal(later, 6);
+    assert_int_equal(later, 9);
+    assert_true(changes <= 30);
+    assert_int_equal(count_halves(100, &later, &changes), 64);
+    assert_int_equal(later, 9);
 }
 
 typedef struct samples {

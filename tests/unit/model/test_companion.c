@@ -359,7 +359,7 @@ TEST(the_finer_solution_takes_little_work) {
 TEST(finer_steps_prove_an_error_in_time) {
     static const char scene[] = "apps/mechanisms/pendulum.yaml";
     const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
-    const char *const sets[] = {"simulation.duration=2 s", "simulation.macro_step=20 ms",
+    const char *const sets[] = {"simulation.duration=2 s", "simulation.macro_step=10 ms",
                                 "simulation.error_bound=1e-6",
                                 "simulation.master={solver: rosenbrock, rtol: 4e-3}", NULL};
     outcome *truth = run_for(scene, STEPS, truth_sets), *o = run_for(scene, STEPS, sets);
