@@ -9,7 +9,7 @@ tolerances. Where these two agree, the finer one is taken for the truth; other s
 promise is broken.
 
   held         estimate up to 1 % of the range
-  warned       estimate above 1 %, exit code 0
+  warned       estimate above 1 %, or a warning that the estimate lacks vibrations; exit code 0
   diagnosed    exit code 3 with its reason
   silent       error above 5 %, exit code 0, estimate less than a third of it
   too little   error above 1e-3, estimate less than a third of it
@@ -171,9 +171,9 @@ class Judgement:
         settled = {v: x for v, x in errors.items() if unsure.get(v, math.inf) <= 0.2 * max(x[0], SMALL) and x[1] == x[1]}
         if len(settled) < len(errors) / 2:
             return "unsettled", "the references differ by up to %.2g" % max(unsure.values(), default=0)
-        return self.judge_estimate(settled, unsure)
+        return self.judge_estimate(run, settled, unsure)
 
-    def judge_estimate(self, settled, unsure):
+    def judge_estimate(self, run, settled, unsure):
         def line(v):
             return "%s: error %.2g estimate %.2g (reference %.1g)" % (v, *settled[v], unsure[v])
         worst = max(settled, key=lambda v: settled[v][0], default=None)
@@ -182,6 +182,8 @@ class Judgement:
         less = max((v for v in settled if settled[v][0] > SMALL),
                    key=lambda v: settled[v][0] / max(settled[v][1], 1e-300), default=None)
         if less is not None and settled[less][0] > 3 * settled[less][1]:
+            if any(warning["limit"] == "fast_vibrations" for warning in run.summary["warnings"]):
+                return "warned", line(less)
             return ("silent" if settled[less][0] > GROSS else "too little"), line(less)
         more = max(settled, key=lambda v: settled[v][1] / max(settled[v][0], 1e-4), default=None)
         if more is not None and settled[more][1] > SMALL and settled[more][1] > 10 * max(settled[more][0], unsure[more]):

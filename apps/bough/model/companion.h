@@ -91,6 +91,7 @@ typedef struct bough_finer {
     double from, until;    // from and up to these times [s]
     double share;          // error of the run relative to the difference
     double work;           // so far (bough_simulation_work)
+    long run_steps;        // of the run's solvers so far
     int n_jump;
     double *jump; // (n_jump) of the jumps, in order [s]
     char *loads;  // memory of the run's loads while they are copied
@@ -99,8 +100,9 @@ typedef struct bough_finer {
 bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f);
 
 // Advances to the time of the run and samples there. False: it does not follow the run, or cannot continue.
-// `work`: of run and companion so far, which limits its own.
-bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work);
+// `work`: of run and companion so far, which limits its own. Where it gives up, the run passes
+// BOUGH_LIMIT_FAST.
+bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work);
 
 // It runs beside some more macro steps.
 void bough_finer_go_on(bough_finer *f, const bough_master *run);

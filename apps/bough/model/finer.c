@@ -1,4 +1,5 @@
 #include "apps/bough/model/companion.h"
+#include "apps/bough/model/validity.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,6 +58,11 @@ static void join(bough_finer *f, bough_simulation *run) {
     snapshot_loads(f->other.simulation, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, f->loads, 0});
 }
 
+static long steps_of(const bough_simulation *s) {
+    bough_statistics sum = bough_master_statistics(s->master);
+    return sum.steps + sum.failed_steps;
+}
+
 // The next jump after a time; HUGE_VAL: none.
 static double next_jump(const bough_finer *f, double t) {
     int k = 0;
@@ -73,7 +79,7 @@ void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, doub
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
     if (jump > m->time + reach || is_dear(f, m, work) || !bough_master_sampled(m)) return;
-    if (!f->follows) join(f, run), f->from = m->time;
+    if (!f->follows) join(f, run), f->from = m->time, f->run_steps = steps_of(run);
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
 }
@@ -82,15 +88,25 @@ void bough_finer_go_on(bough_finer *f, const bough_master *run) {
     f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
 }
 
-bool bough_finer_advance(bough_finer *f, const bough_simulation *run, double work) {
+// Whether it has failed by too many steps, and the run passes over the same vibrations: it takes less than a
+// quarter of the steps, of which a hundredth of its tolerance needs a few times as many.
+static bool gave_up(const bough_finer *f, const bough_status *status, long steps, long by_run) {
+    int most = f->other.simulation->scene->simulation.master.most_steps;
+    return status->code == BOUGH_FAILED && steps >= most / 5 && 4 * by_run < most;
+}
+
+bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     bough_status status = bough_ok();
     bool ends = run->master->time > f->until || is_dear(f, run->master, work);
     if (!f->follows || ends) return f->follows = false;
+    long before = steps_of(own), by_run = steps_of(run) - f->run_steps;
+    f->run_steps += by_run;
     f->work -= bough_simulation_work(own);
     while (bough_is_ok(&status) && own->master->time < run->master->time)
         status = bough_other_run_step(&f->other, run);
     f->work += bough_simulation_work(own);
+    if (gave_up(f, &status, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
     f->follows = bough_is_ok(&status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;

@@ -83,6 +83,9 @@ static const struct {
     [BOUGH_LIMIT_STEPS] =
         {"solver_steps",
          "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
+    [BOUGH_LIMIT_FAST] =
+        {"fast_vibrations",
+         "vibrations that take some hundred steps in a macro step of %.4g s may be missing from the results and from the error estimate, above all in forces and velocities: damp them, or take a smaller rtol"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -342,6 +345,13 @@ static bough_status find_fastest(bough_arena *arena, void *self) {
     return status;
 }
 
+static void pass_fastest(bough_simulation *s, bough_limit limit, double value) {
+    fastest f = {s, 0};
+    bough_status status = bough_arena_use(find_fastest, &f);
+    (void)status; // without a rate the first body is named
+    pass(s->validity, limit, f.body, s->master->time, value);
+}
+
 void bough_validity_check_work(bough_simulation *s, double steps) {
     bough_validity *v = s->validity;
     double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts from 0
@@ -350,10 +360,11 @@ void bough_validity_check_work(bough_simulation *s, double steps) {
     int states = s->master->assembly->n_state;
     v->work += taken * (states > least_states ? states : least_states);
     if (v->work < most_work) return;
-    fastest f = {s, 0};
-    bough_status status = bough_arena_use(find_fastest, &f);
-    (void)status; // without a rate the first body is named
-    pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
+    pass_fastest(s, BOUGH_LIMIT_STEPS, taken);
+}
+
+void bough_validity_pass_fast(bough_simulation *s) {
+    pass_fastest(s, BOUGH_LIMIT_FAST, s->scene->simulation.macro_step);
 }
 
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {

@@ -20,6 +20,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_ROTATION,    // the rotor turns by a sixth of a rotation between two samples of the air
     BOUGH_LIMIT_START,       // the equilibrium from which the run starts is unstable
     BOUGH_LIMIT_STEPS,       // short steps of a solver take most of the time
+    BOUGH_LIMIT_FAST,        // vibrations are too fast for the run and for the finer solution beside it
     BOUGH_LIMITS,
 } bough_limit;
 
@@ -53,6 +54,9 @@ bough_status bough_validity_check_closed(bough_simulation *s);
 
 // Counts macro steps with very many steps of solvers; `steps` of all solvers since the start of the process.
 void bough_validity_check_work(bough_simulation *s, double steps);
+
+// The finer solution beside the run gives up.
+void bough_validity_pass_fast(bough_simulation *s);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
 const char *bough_limit_name(bough_limit limit);
