@@ -168,6 +168,11 @@ modes() {
     [ "$(grep -c ',1,a z,.*,a,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: a is not line 1 at all points"
     [ "$(grep -c ',2,b z,.*,b,z,' crossing/campbell.csv)" -eq 5 ] || fail "$said: b is not line 2 at all points"
     rm -r crossing
+    # a pendulum that stands on its head falls without an oscillation
+    expect 0 modes "$folder/apps/mechanisms/pendulum.yaml" --out falling --set modes.at=undeformed \
+        --set 'bodies[bob].joint.angle=90 deg' --set 'bodies[bob].inertia=[0.1, 0.1, 0.1]'
+    has ../stdout '^   1  *0[.][0-9]*  *0  *-100[.]00000  *-  bob '
+    rm -r falling
     refused 'the linear system changes by' modes "$turbine" --set 'bodies[blade1].pitch=7 deg'
     expect 0 modes "$blade" --set 'modes={of: scene, count: 9}' --set 'bodies[0].rod.segments=6' --out mesh
     has ../stdout '^warning: changed by more than 1 % with half the segments: mode [2-9]'

@@ -43,8 +43,12 @@ static double decrement(double frequency, double damped_frequency, double dampin
 }
 
 void bough_modes_print_value(double frequency, double damped_frequency, double damping) {
-    printf(" %12.6g %12.6g %11.5f %11.5f  ", frequency, damped_frequency, 100 * damping,
-           decrement(frequency, damped_frequency, damping));
+    double ratio = decrement(frequency, damped_frequency, damping);
+    printf(" %12.6g %12.6g %11.5f", frequency, damped_frequency, 100 * damping);
+    if (isnan(ratio))
+        printf(" %11s  ", "-");
+    else
+        printf(" %11.5f  ", ratio);
 }
 
 void bough_modes_write_value(FILE *file, double frequency, double damped_frequency, double damping) {
