@@ -94,6 +94,7 @@ statics() {
     rm -r turning
     expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
     has ../stderr 'no equilibrium found in .* nothing but loads holds the joint of .hub.: it needs a spring, a speed or a motion'
+    ! grep -q -e --path ../stderr || fail "$said: $(cat ../stderr)" # there is none with air
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
     # a slack line from above its clamp, which the rod's own search loses at 99 % of the load

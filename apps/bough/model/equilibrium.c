@@ -295,7 +295,7 @@ static bough_status report_point(void *self, double factor, const double *state,
     return x->listener.point(x->listener.self, time, factor, limit);
 }
 
-static bough_status refuse_path(const bough_simulation *s) {
+bough_status bough_equilibrium_check_path(const bough_simulation *s) {
     const char *file = s->scene->file;
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
@@ -336,7 +336,7 @@ bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *as
     x.listener = listener;
     x.report = report;
     *report = (bough_path_report){0};
-    BOUGH_TRY(refuse_path(s));
+    BOUGH_TRY(bough_equilibrium_check_path(s));
     return bough_arena_use(walk_path, &x);
 }
 

@@ -66,10 +66,13 @@ typedef struct bough_path_listener {
     bough_status (*point)(void *self, double time, double factor, bool limit);
 } bough_path_listener;
 
+// BOUGH_INVALID for scenes without a path of equilibria: with air, prescribed motions, jumps of loads, or
+// loads that do not grow.
+bough_status bough_equilibrium_check_path(const bough_simulation *s);
+
 // Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
-// bough_equilibrium_time, in proportion, through limit points (cosim/analysis/path.h). BOUGH_INVALID for
-// scenes with air, prescribed motions, jumps of loads, or loads that do not grow. BOUGH_FAILED when the path
-// ends before.
+// bough_equilibrium_time, in proportion, through limit points (cosim/analysis/path.h). BOUGH_INVALID by
+// bough_equilibrium_check_path, BOUGH_FAILED when the path ends before.
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
                                    bough_path_listener listener, bough_path_report *report);
 

@@ -111,13 +111,13 @@ static bough_status explain(bough_arena *arena, const bough_simulation *s, const
         snprintf(joint, sizeof joint,
                  "nothing but loads holds the joint of '%.80s': it needs a spring, a speed or a motion; or ",
                  loose);
+    bough_status path = bough_equilibrium_check_path(s);
     return bough_fail(
         BOUGH_FAILED,
         "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
-        "in a step, at a rate of %.3g; %sthe load is too large (try a part of it, or 'bough static "
-        "--path'), or the mesh too coarse",
+        "in a step, at a rate of %.3g; %sthe load is too large (try a part of it%s), or the mesh too coarse",
         bough_simulation_body_of(s, assembly, report->row), report->steps, report->change, report->rate,
-        joint);
+        joint, bough_is_ok(&path) ? ", or 'bough static --path'" : "");
 }
 
 // -- the search -----------------------------------------------------------------------------------
