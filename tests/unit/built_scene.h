@@ -6,7 +6,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
 
-#include <string.h>
 #include <unistd.h>
 
 static const char *const no_sets[] = {NULL}; // no values are replaced

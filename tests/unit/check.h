@@ -1,4 +1,4 @@
-// What every test file includes: cmocka, mathematics, streams and strings of the C library, the declaration
+// What every test file includes: cmocka, the usual headers of the C library, the declaration
 // of a test, and the comparison of numbers.
 //
 //     TEST(a_sentence_that_holds) { check_near(length, 2, 1e-12, 0); }
@@ -14,6 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 

@@ -7,8 +7,6 @@
 #include "core/base/base.h"
 #include "tests/unit/check.h"
 
-#include <stdlib.h>
-
 // Cylinders of drag .5 and .35, DU 40 %, 35, 30, 25, 21 % and NACA 64: filled before the tests start.
 enum { NREL5MW_POLARS = 8, NREL5MW_ROWS = 1000 };
 static bough_polar_def nrel5mw_polars[NREL5MW_POLARS];

@@ -12,9 +12,6 @@
 #include "core/tree/loop.h"
 #include "core/tree/tree.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { MOST = 64 };
 
 static const bough_vec3 down_z = {0, 0, -9.81};

@@ -8,8 +8,6 @@
 #include "tests/unit/printed.h"
 #include "tests/unit/scratch_name.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #define SCENES BOUGH_SOURCE_DIR "/tests/data/scenes/"

@@ -7,9 +7,6 @@
 
 #include <dirent.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { SCRATCH_TEXT = 1 << 20 };

@@ -5,8 +5,6 @@
 #include "tests/unit/check.h"
 #include "tests/verification/two_mass.h"
 
-#include <string.h>
-
 static inline double two_mass_error(bough_two_mass *m) {
     double worst;
     check_ok(bough_two_mass_error(m, &worst));

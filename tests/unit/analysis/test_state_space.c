@@ -5,8 +5,6 @@
 #include "cosim/whole.h"
 #include "tests/unit/built_scene.h"
 
-#include <stdlib.h>
-
 static bough_state_space linear(bough_arena *arena, bough_simulation *s) {
     bough_state_space x;
     check_ok(bough_state_space_find(arena, s, 0, &x));

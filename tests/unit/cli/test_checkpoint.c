@@ -4,8 +4,6 @@
 
 #include "cosim/scheme.h"
 
-#include <stdlib.h>
-
 typedef struct copy {
     char *bytes;
     size_t size;

@@ -4,7 +4,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/printed.h"
 
-#include <stdlib.h>
 #include <time.h>
 
 // A small schema with every kind of key.

@@ -4,7 +4,6 @@
 #include "tests/unit/printed.h"
 #include "tests/unit/scratch_name.h"
 
-#include <stdlib.h>
 #include <time.h>
 
 typedef struct fixture {

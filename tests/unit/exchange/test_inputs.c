@@ -4,8 +4,6 @@
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"
 
-#include <stdlib.h>
-
 #define APPS BOUGH_SOURCE_DIR "/apps/"
 #define MOST 12
 

@@ -5,7 +5,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 enum { N_Z = 2, N_Y = 3, N_T = 4 };

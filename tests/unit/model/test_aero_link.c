@@ -6,7 +6,6 @@
 
 #include "apps/bough/model/aero_link.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const char turbine[] = "tests/data/scenes/example-turbine.yaml";

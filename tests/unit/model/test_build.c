@@ -6,8 +6,6 @@
 #include "apps/bough/model/aero_link.h"
 #include "flexbody/section/section.h"
 
-#include <stdlib.h>
-
 static const char runup[] = "apps/turbine/runup.yaml", arms[] = "tests/data/scenes/arms.yaml";
 
 // -- parts ----------------------------------------------------------------------------------------

@@ -7,8 +7,6 @@
 #include "tests/unit/rod_energy.h"
 #include "tests/unit/tree_measure.h"
 
-#include <stdlib.h>
-
 static const char tip_weight[] = "tests/data/scenes/tip-weight.yaml";
 static const char mast[] = "tests/data/scenes/tower.yaml";
 static const char parked[] = "tests/data/scenes/parked.yaml";

@@ -4,8 +4,6 @@
 #include "apps/bough/model/run.h"
 #include "tests/unit/built_scene.h"
 
-#include <stdlib.h>
-
 static const char example[] = "tests/data/scenes/example-turbine.yaml";
 enum { MOST = 256, STEPS = 100 };
 

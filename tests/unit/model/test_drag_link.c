@@ -3,8 +3,6 @@
 
 #include "apps/bough/model/aero_link.h"
 
-#include <stdlib.h>
-
 static const char turbine[] = "apps/turbine/land.yaml";
 
 #define FEW "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4-6].rod.segments=12"

@@ -2,8 +2,6 @@
 #include "apps/bough/model/run.h"
 #include "tests/unit/built_scene.h"
 
-#include <stdlib.h>
-
 enum { MOST = 64 };
 
 typedef struct sampled {

@@ -5,8 +5,6 @@
 
 #include "apps/bough/model/aero_link.h"
 
-#include <stdlib.h>
-
 enum { MOST_ROWS = 2100, BLADES = 3 };
 
 // What a run leaves behind, a row per macro step.

@@ -4,8 +4,6 @@
 // beside an independent solution.
 #include "tests/unit/built_scene.h"
 
-#include <stdlib.h>
-
 enum { SEGMENTS = 16, COMPONENTS = 13, UNKNOWNS = COMPONENTS * SEGMENTS + 2 };
 
 static const double gravity = 9.81; // along −z

@@ -7,7 +7,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const double degree = BOUGH_PI / 180;

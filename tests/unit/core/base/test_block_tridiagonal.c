@@ -5,8 +5,6 @@
 #include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"
 
-#include <stdlib.h>
-
 enum { W = 8, MOST = 48 };
 
 typedef struct fixture {

@@ -3,8 +3,6 @@
 
 #include "core/base/linalg.h"
 
-#include <stdlib.h>
-
 TEST(lu_solves_with_interchanges) {
     // column-major; the first pivot is zero
     double a[9] = {0, 2, 1, 1, 0, 1, 3, 1, 0};

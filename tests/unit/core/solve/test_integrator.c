@@ -6,8 +6,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/integrator.h"
 
-#include <stdlib.h>
-
 typedef struct method {
     bough_integrator_kind kind;
     const char *name;

@@ -4,8 +4,6 @@
 
 #include "core/solve/integrator.h"
 
-#include <stdlib.h>
-
 enum { MOST = 4 };
 static const double unit[MOST] = {1, 1, 1, 1};
 static const double wild[MOST] = {1, 1e4, 1, 1}; // van der Pol's speeds reach 1e6

@@ -7,8 +7,6 @@
 #include "flexbody/rod/rod_static.h"
 #include "flexbody/section/section.h"
 
-#include <stdlib.h>
-
 typedef struct blade {
     bough_arena *arena;
     const bough_rod_def *def;

@@ -7,8 +7,6 @@
 #include "tests/unit/rod_energy.h"
 #include "tests/unit/sample_rod.h"
 
-#include <stdlib.h>
-
 enum { N = 7, STATES = BOUGH_ROD_STATES * N };
 
 typedef struct fixture {

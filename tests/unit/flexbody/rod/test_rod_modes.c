@@ -6,8 +6,6 @@
 #include "flexbody/section/section.h"
 #include "tests/unit/sample_rod.h"
 
-#include <stdlib.h>
-
 enum { MODES = 8 };
 
 // A uniform rod of unit length along z; mass per length, mass matrix of the discretiser.
