@@ -111,7 +111,8 @@ static bough_status explain(bough_arena *arena, const bough_simulation *s, const
         snprintf(joint, sizeof joint,
                  "nothing but loads holds the joint of '%.80s': it needs a spring, a speed or a motion; or ",
                  loose);
-    bough_status path = bough_equilibrium_check_path(s);
+    // none while a run is built, whose loads have no times yet
+    bough_status path = s->master ? bough_equilibrium_check_path(s) : bough_fail(BOUGH_INVALID, "no path");
     return bough_fail(
         BOUGH_FAILED,
         "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
