@@ -37,14 +37,14 @@ static void take(bough_arena *arena, work *w) {
 }
 
 // Advances the air's states by `step` from `from`, which is changed, to `to`, where the bodies have been set
-// to `state`.
-static void advance_air(work *w, const double *state, double step, double *from, double *to) {
+// to `state`; `loads`: also sets the loads on them.
+static void advance_air(work *w, const double *state, bool loads, double step, double *from, double *to) {
     size_t size = (size_t)w->whole->assembly->n_state * sizeof *state;
     bool moved = memcmp(w->motion, state, size) != 0;
     memcpy(w->motion, state, size);
     from[0] = w->time - step;
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, from);
-    bough_aero_link_continue(w->simulation->aero, w->time, moved);
+    (loads ? bough_aero_link_continue : bough_aero_link_remember)(w->simulation->aero, w->time, moved);
     bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_SAVE, to);
 }
 
@@ -54,9 +54,9 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->whole->assembly, w->state);
     if (w->dynamic) {
-        advance_air(w, w->state, rate_time, w->before, w->after);
+        advance_air(w, w->state, false, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
-        advance_air(w, w->state, rate_time, w->before, w->after);
+        advance_air(w, w->state, true, rate_time, w->before, w->after);
         for (int k = 0; k < w->n_air; k++) {
             air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / rate_time;
         }
@@ -75,7 +75,7 @@ static void settle(work *w, const double *state) {
     bough_aero_link_continue(s->aero, w->time, false);
     bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
     for (int k = 0; k < REST_STEPS; k++) {
-        advance_air(w, state, rest_time, w->before, w->memory);
+        advance_air(w, state, k + 1 == REST_STEPS, rest_time, w->before, w->memory);
         memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
     }
 }

@@ -320,12 +320,21 @@ static void begin_anew(bough_aero_link *link) {
     bough_aero_link_renew(link);
 }
 
-void bough_aero_link_continue(bough_aero_link *link, double t, bool moved) {
+static void evaluate_anew(bough_aero_link *link, double t, bool moved) {
     begin_anew(link);
     if (moved)
         evaluate_present(link, t);
     else
         evaluate_rotor(link, link->shown, NULL, NULL);
+}
+
+void bough_aero_link_remember(bough_aero_link *link, double t, bool moved) {
+    evaluate_anew(link, t, moved);
+    begin_anew(link);
+}
+
+void bough_aero_link_continue(bough_aero_link *link, double t, bool moved) {
+    evaluate_anew(link, t, moved);
     keep(link, t);
     begin_anew(link);
     if (link->simulation->drag) bough_drag_link_hold(link->simulation->drag, t);

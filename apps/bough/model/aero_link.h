@@ -22,6 +22,9 @@ void bough_aero_link_hold(bough_aero_link *link, double t);
 // false: time, motion and wind are those of the last such call, whose inductions in balance hold.
 void bough_aero_link_continue(bough_aero_link *link, double t, bool moved);
 
+// Inflow and stall continue alike, and the loads stay as they are.
+void bough_aero_link_remember(bough_aero_link *link, double t, bool moved);
+
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);
 

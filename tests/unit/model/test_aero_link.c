@@ -469,6 +469,15 @@ TEST(memory_goes_on_alike_where_the_motion_is_known) {
     }
     assert_memory_equal(after, after + n, n * sizeof *after);
     assert_memory_equal(found[0].value, found[1].value, sizeof found[0].value);
+    // without loads
+    bough_aero_link_memory(aero, BOUGH_SNAPSHOT_RESTORE, before);
+    bough_aero_link_remember(aero, 0.3, true);
+    bough_aero_link_memory(aero, BOUGH_SNAPSHOT_SAVE, after);
+    assert_memory_equal(after, after + n, n * sizeof *after);
+    bough_aero_link_remember(aero, 0.4, true);
+    found[0] = signal_of(&f, FLEXIBLE);
+    assert_memory_equal(found[0].value, found[1].value, sizeof found[0].value);
+    check_near(found[0].start, 0.3, 0, 0);
     int changed = 0;
     for (int i = 0; i < n_state; i++) changed += after[row[i]] != before[row[i]];
     assert_true(3 * changed > n_state);
