@@ -147,9 +147,11 @@ static double round_step(double limit) {
     return round[i] * unit;
 }
 
+static const double much_shorter = 0.25; // than the limit: then a step need not be round
+
 // The longest macro step up to `limit` that fits: a round number, or else a fraction of the shortest period.
 static double longest_step(const bough_scene *s, double limit) {
-    for (double step = round_step(limit); step > 1e-3 * limit; step = round_step(0.9 * step)) {
+    for (double step = round_step(limit); step > much_shorter * limit; step = round_step(0.9 * step)) {
         if (bough_scene_step_fits(s, step)) return step;
     }
     double period[PERIODS], shortest = (double)INFINITY;
@@ -157,9 +159,8 @@ static double longest_step(const bough_scene *s, double limit) {
     for (int i = 0; i < PERIODS; i++) {
         if (period[i] > 0) shortest = fmin(shortest, period[i]);
     }
-    double parts = ceil(shortest / limit);
-    for (int i = 0; i < 1000; i++) {
-        if (bough_scene_step_fits(s, shortest / (parts + i))) return shortest / (parts + i);
+    for (double parts = ceil(shortest / limit); shortest / parts > 1e-3 * limit; parts++) {
+        if (bough_scene_step_fits(s, shortest / parts)) return shortest / parts;
     }
     return round_step(limit);
 }

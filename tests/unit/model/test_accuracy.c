@@ -128,6 +128,11 @@ TEST(durations_without_a_round_step_are_divided) {
     fixture f = accepts("simulation: {duration: 0.777777777}\nbodies:\n" BODY("a", "ground"));
     double count = 0.777777777 / f.scene->simulation.macro_step;
     check_near(count, 100, 1e-9, 0);
+    // not into 7777 steps of 0.1 ms
+    f = accepts("simulation: {duration: 0.7777}\nbodies:\n" BODY("a", "ground"));
+    check_near(0.7777 / f.scene->simulation.macro_step, 100, 1e-9, 0);
+    f = accepts("simulation: {duration: 10.0003, output: {interval: 0.5}}\nbodies:\n" BODY("a", "ground"));
+    check_near(f.scene->simulation.macro_step, 1e-4, 1e-12, 0);
 }
 
 #define TURBINE(keys)                                                                                        \
