@@ -240,12 +240,17 @@ void bough_whole_respond(const bough_whole *whole, int i, double *x) {
 // x_i with the response to the interface.
 static void complete(bough_whole *whole, int i) { bough_whole_respond(whole, i, whole->x); }
 
-// Without regard to held states: members by themselves, the interface, members with their response to it.
+// The interface, members with their response to it.
+static void solve_coupling(bough_whole *whole) {
+    bough_whole_solve_interface(whole);
+    each(whole, ALL, complete);
+}
+
+// Without regard to held states: first the members by themselves.
 static void solve_free(bough_whole *whole, double *x) {
     bough_whole_begin_solution(whole, x);
     each(whole, ALL, bough_whole_solve_of);
-    bough_whole_solve_interface(whole);
-    each(whole, ALL, complete);
+    solve_coupling(whole);
 }
 
 void bough_whole_close(bough_whole *whole, double *change) {
@@ -278,19 +283,33 @@ static bool factor_border(bough_whole *whole) {
     return held == 0 || bough_dense_factor(held, whole->multiplier, whole->held_pivot);
 }
 
-void bough_whole_solve(bough_whole *whole, double *x) {
+// A solution without what the multipliers add that keep the held states.
+static void hold(bough_whole *whole, double *x) {
     int n = whole->assembly->n_state, held = whole->n_held;
-    solve_free(whole, x);
     if (held == 0) return;
-    // the multipliers that keep the held states
     for (int i = 0; i < held; i++) whole->held_force[i] = x[whole->held[i]];
     bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->held_force);
-    // the solution without what they add
     for (int j = 0; j < held; j++) {
         const double *column = whole->border + (size_t)j * n;
         for (int k = 0; k < n; k++) x[k] -= whole->held_force[j] * column[k];
     }
     for (int i = 0; i < held; i++) x[whole->held[i]] = 0;
+}
+
+void bough_whole_solve(bough_whole *whole, double *x) {
+    solve_free(whole, x);
+    hold(whole, x);
+}
+
+void bough_whole_follow(bough_whole *whole, int output, double *x) {
+    const bough_assembly *a = whole->assembly;
+    memset(x, 0, (size_t)a->n_state * sizeof *x);
+    memset(whole->output_change, 0, (size_t)a->n_output * sizeof(double));
+    memset(whole->interface->coordinate, 0, (size_t)whole->interface->n * sizeof(double));
+    whole->output_change[output] = 1;
+    bough_whole_begin_solution(whole, x);
+    solve_coupling(whole);
+    hold(whole, x);
 }
 
 // -- memory ---------------------------------------------------------------------------------------

@@ -69,18 +69,37 @@ static void set_columns(const bough_air_inverse *x, double *z) {
     if (x->blades) bough_blade_inverse_gather(x->blades, x->n_other, z, x->to);
 }
 
+// What forces on a blade do to the others, y (n_other × r), by the outputs that they change.
+static void follow_blade(bough_arena *arena, const bough_air_inverse *x, int blade, double *y) {
+    bough_whole *whole = x->system->whole;
+    const bough_assembly *a = whole->assembly;
+    int member = x->system->group->blade[blade]->port + 1, first = a->output_offset[member];
+    size_t n_output = (size_t)a->member[member]->system.n_output, n_other = (size_t)x->n_other;
+    double *column = bough_arena_doubles(arena, (size_t)x->n);
+    double *by_output = bough_arena_doubles(arena, n_other * n_output + 1);
+    double *change = bough_arena_doubles(arena, n_output * (size_t)x->r + 1);
+    for (size_t o = 0; o < n_output; o++) {
+        bough_whole_follow(whole, first + (int)o, column);
+        for (size_t i = 0; i < n_other; i++) by_output[o * n_other + i] = column[x->other[i]];
+    }
+    bough_whole_begin_solution(whole, column);
+    for (size_t j = 0; j < (size_t)x->r; j++) {
+        double *own = column + a->state_offset[member];
+        memset(own, 0, (size_t)x->r * sizeof *own);
+        column[x->system->def->row[(size_t)(blade * x->r) + j]] = 1;
+        bough_whole_solve_of(whole, member);
+        memcpy(change + j * n_output, whole->output_change + first, n_output * sizeof *change);
+    }
+    bough_dense_product((bough_product){x->n_other, x->r, (int)n_output, false, 1, 0}, by_output, change, y);
+}
+
 // Yᵀ into x->from: what forces on the blades do to the others, P_oo⁻¹ P_ob.
 static bool set_rows(bough_arena *arena, const bough_air_inverse *x, double *z) {
     size_t n = (size_t)x->n, n_other = (size_t)x->n_other, all = (size_t)(x->n_part * x->r);
     const int *row = x->system->def->row;
     int *pivot = bough_arena_take(arena, (n_other + 1) * sizeof *pivot);
-    double *column = bough_arena_doubles(arena, n), *y = bough_arena_doubles(arena, all * n_other + 1);
-    for (size_t j = 0; j < all; j++) {
-        memset(column, 0, n * sizeof *column);
-        column[row[j]] = 1;
-        bough_whole_solve(x->system->whole, column);
-        for (size_t i = 0; i < n_other; i++) y[j * n_other + i] = column[x->other[i]];
-    }
+    double *y = bough_arena_doubles(arena, all * n_other + 1);
+    for (int k = 0; k < x->n_part; k++) follow_blade(arena, x, k, y + (size_t)(k * x->r) * n_other);
     double *factor = bough_arena_copy(arena, x->others, square(x->n_other) * sizeof *factor);
     if (!bough_dense_factor(x->n_other, factor, pivot)) return false;
     bough_dense_solve(x->n_other, (int)all, factor, pivot, y);

@@ -18,6 +18,35 @@ static void build(bough_two_mass *m, bough_whole **whole, int threads) {
     assert_true(bough_is_ok(&status));
 }
 
+// A solution is that of a member by itself and what all states follow of its outputs.
+TEST(a_member_moves_the_whole_by_its_outputs) {
+    bough_whole *whole;
+    bough_two_mass m;
+    build(&m, &whole, 1);
+    const double y[N] = {.1, -.2, .5, .3};
+    const bough_assembly *a = whole->assembly;
+    int compared = 0;
+    check_ok(bough_whole_setup(whole, 0, y, whole->input, .1));
+    for (int i = 0; i < a->n_member; i++) {
+        const int first = a->output_offset[i], n_output = a->member[i]->system.n_output;
+        if (whole->interface->part[i].by_state) continue;
+        for (int j = a->state_offset[i]; j < a->state_offset[i + 1]; j++) {
+            double x[N] = {0}, sum[N] = {0}, by_one[N], moved[N];
+            x[j] = sum[j] = 1;
+            bough_whole_solve(whole, x);
+            bough_whole_begin_solution(whole, sum);
+            bough_whole_solve_of(whole, i);
+            memcpy(moved, whole->output_change + first, (size_t)n_output * sizeof *moved);
+            for (int o = 0; o < n_output; o++) {
+                bough_whole_follow(whole, first + o, by_one);
+                for (int k = 0; k < N; k++) sum[k] += moved[o] * by_one[k];
+            }
+            for (int k = 0; k < N; k++, compared++) check_near(sum[k], x[k], 1e-12, 1e-15);
+        }
+    }
+    assert_true(compared > 0);
+}
+
 // The system is linear: (I − γJ) x = r is x − γ (F(y + x) − F(y)) = r.
 TEST(solves_the_coupled_system) {
     bough_whole *whole;
