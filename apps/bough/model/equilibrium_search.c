@@ -111,14 +111,17 @@ static bough_status explain(bough_arena *arena, const bough_simulation *s, const
         snprintf(joint, sizeof joint,
                  "nothing but loads holds the joint of '%.80s': it needs a spring, a speed or a motion; or ",
                  loose);
-    // none while a run is built, whose loads have no times yet
-    bough_status path = s->master ? bough_equilibrium_check_path(s) : bough_fail(BOUGH_INVALID, "no path");
+    bool path = false; // unknown while the run is built
+    if (s->master) {
+        bough_status status = bough_equilibrium_check_path(s);
+        path = bough_is_ok(&status);
+    }
     return bough_fail(
         BOUGH_FAILED,
         "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
         "in a step, at a rate of %.3g; %sthe load is too large (try a part of it%s), or the mesh too coarse",
         bough_simulation_body_of(s, assembly, report->row), report->steps, report->change, report->rate,
-        joint, bough_is_ok(&path) ? ", or 'bough static --path'" : "");
+        joint, path ? ", or 'bough static --path'" : "");
 }
 
 // -- the search -----------------------------------------------------------------------------------
