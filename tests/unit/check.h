@@ -19,6 +19,7 @@
 #include <cmocka.h>
 
 #include "core/base/arena.h"
+#include "core/base/base.h"
 #include "core/base/status.h"
 
 #include <string.h>

@@ -4,7 +4,6 @@
 #define BOUGH_TESTS_UNIT_NREL5MW_AERO_H
 
 #include "aero/rotor/rotor.h"
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 
 // Cylinders of drag .5 and .35, DU 40 %, 35, 30, 25, 21 % and NACA 64: filled before the tests start.

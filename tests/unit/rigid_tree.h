@@ -2,11 +2,9 @@
 #ifndef BOUGH_TESTS_UNIT_RIGID_TREE_H
 #define BOUGH_TESTS_UNIT_RIGID_TREE_H
 
-#include "tests/unit/check.h"
 #include "tests/unit/member.h"
 #include "tests/unit/sample_numbers.h"
 
-#include "core/base/base.h"
 #include "core/base/rotation.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"

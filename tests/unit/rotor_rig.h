@@ -3,9 +3,7 @@
 #define BOUGH_TESTS_UNIT_ROTOR_RIG_H
 
 #include "aero/rotor/rotor.h"
-#include "core/base/base.h"
 #include "core/base/rotation.h"
-#include "tests/unit/check.h"
 #include "tests/unit/nrel5mw_aero.h"
 
 static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;

@@ -1,8 +1,6 @@
 #include "cosim/analysis/modes.h"
 #include "tests/unit/two_mass.h"
 
-#include "core/base/base.h"
-
 #include <complex.h>
 
 enum { N = 4 };

@@ -1,7 +1,6 @@
 // Thin-walled sections against formulas: tubes, boxes with one and two cells, a slit tube, laminates.
 #include "apps/bough/import/section.h"
 
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 
 static const bough_ply steel = {{200e9, 200e9}, 80e9, 0.25, 7800, 0, 0.01};

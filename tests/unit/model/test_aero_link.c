@@ -2,7 +2,6 @@
 // samples. The scene has a flexible and a rigid blade.
 #include "tests/unit/built_scene.h"
 #include "tests/unit/sample_numbers.h"
-#include "tests/unit/scratch_name.h"
 
 #include "apps/bough/model/aero_link.h"
 

@@ -1,7 +1,6 @@
 // Rods that carry bodies, as scenes: statics, frequencies, conservation against theory, and every
 // coupling scheme against the monolithic one.
 #include "apps/bough/model/equilibrium.h"
-#include "core/base/base.h"
 #include "core/tree/force.h"
 #include "tests/unit/built_scene.h"
 #include "tests/unit/rod_energy.h"

@@ -1,7 +1,6 @@
 // The companion of a run: what it states beside solutions that are finer in mesh, air and time.
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/error_verdict.h"
-#include "apps/bough/model/run.h"
 #include "tests/unit/built_scene.h"
 
 static const char example[] = "tests/data/scenes/example-turbine.yaml";

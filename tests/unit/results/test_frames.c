@@ -1,5 +1,4 @@
 // Frames for ParaView, and the page that shows them.
-#include "tests/unit/check.h"
 #include "tests/unit/scratch.h"
 
 #include "apps/bough/results/frames.h"

@@ -1,6 +1,5 @@
 // Numbers written fast are printf's, byte for byte.
 #include "apps/bough/results/recorder.h"
-#include "tests/unit/check.h"
 #include "tests/unit/sample_rod.h"
 
 #include <float.h>

@@ -1,6 +1,5 @@
 #include "aero/control/controller.h"
 
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 
 static const double rpm = BOUGH_PI / 30, gear = 97, inertia = 43784725; // slow shaft [kg m²]

@@ -1,4 +1,3 @@
-#include "core/base/base.h"
 #include "tests/unit/nrel5mw_aero.h"
 #include "tests/unit/one_element.h"
 #include "tests/unit/sample_numbers.h"

@@ -1,7 +1,5 @@
 #include "aero/rotor/polar.h"
 
-#include "core/base/base.h"
-#include "tests/unit/check.h"
 #include "tests/unit/nrel5mw_aero.h"
 
 static const double degree = BOUGH_PI / 180;

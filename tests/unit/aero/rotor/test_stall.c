@@ -1,6 +1,5 @@
 #include "aero/rotor/stall.h"
 
-#include "core/base/base.h"
 #include "tests/unit/nrel5mw_aero.h"
 #include "tests/unit/sample_numbers.h"
 

@@ -1,6 +1,5 @@
 #include "aero/rotor/tower.h"
 
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 
 static const double degree = BOUGH_PI / 180;

@@ -1,6 +1,5 @@
 #include "aero/wind/wind.h"
 
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 
 // Of a def without a table.

@@ -1,6 +1,5 @@
 #include "aero/wind/wind.h"
 
-#include "core/base/base.h"
 #include "tests/unit/sample_numbers.h"
 #include "tests/unit/scratch_name.h"
 

@@ -3,7 +3,6 @@
 #include "aero/wind/wind.h"
 
 #include "aero/wind/wind_iec.h"
-#include "core/base/base.h"
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
 

@@ -1,8 +1,6 @@
 // The arena: alignment, zeroing, work that is left where memory ends, release in reverse order.
 #include "tests/unit/check.h"
 
-#include "core/base/arena.h"
-
 TEST(blocks_are_aligned_zeroed_and_apart) {
     check_arena(arena);
     assert_non_null(arena);

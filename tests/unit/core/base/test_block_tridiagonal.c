@@ -1,5 +1,4 @@
 // Block-tridiagonal elimination against the dense matrix solved with pivoting.
-#include "tests/unit/check.h"
 
 #include "core/base/block_tridiagonal.h"
 #include "core/base/linalg.h"

@@ -1,5 +1,4 @@
 // Sums of weighted columns at every level of the kernels that the processor runs.
-#include "tests/unit/check.h"
 
 #include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"

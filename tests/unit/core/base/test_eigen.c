@@ -1,7 +1,6 @@
 // Eigenvalues of block-tridiagonal systems with closed forms.
 #include "tests/unit/check.h"
 
-#include "core/base/base.h"
 #include "core/base/eigen.h"
 
 enum { N = 40, WANTED = 10 };

@@ -5,7 +5,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/frames.h"
 #include "apps/bough/results/recorder.h"
-#include "tests/unit/check.h"
 #include "tests/unit/scratch.h"
 
 #include <sundials/sundials_nvector.h>

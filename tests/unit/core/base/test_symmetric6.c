@@ -1,5 +1,4 @@
 // Symmetric 6×6 matrices kept as triangles.
-#include "tests/unit/check.h"
 
 #include "core/base/linalg.h"
 #include "tests/unit/sample_rod.h"

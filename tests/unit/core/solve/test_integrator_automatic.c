@@ -3,8 +3,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/integrator.h"
 
-#include "core/solve/integrator.h"
-
 enum { N = 2 };
 
 typedef struct oscillator {

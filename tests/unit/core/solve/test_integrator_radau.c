@@ -2,8 +2,6 @@
 #include "tests/unit/check.h"
 #include "tests/unit/integrator.h"
 
-#include "core/solve/integrator.h"
-
 enum { MOST = 4 };
 static const double unit[MOST] = {1, 1, 1, 1};
 static const double wild[MOST] = {1, 1e4, 1, 1}; // van der Pol's speeds reach 1e6

@@ -1,10 +1,8 @@
 // Mechanisms of rigid bodies as whole scenes: from the file to the channels.
 #include "apps/bough/results/channels.h"
 #include "core/base/rotation.h"
-#include "core/tree/loop.h"
 #include "cosim/analysis/stability.h"
 #include "tests/unit/built_scene.h"
-#include "tests/unit/scratch_name.h"
 #include "tests/unit/tree_measure.h"
 
 #include <dirent.h>

@@ -1,8 +1,6 @@
 // Modal bodies against the rod they stand for, and against the laws of conservation.
-#include "tests/unit/check.h"
 
 #include "cosim/signal.h"
-#include "flexbody/modal/modal_system.h"
 #include "flexbody/rod/rod_modes.h"
 #include "flexbody/rod/rod_system.h"
 #include "flexbody/section/section.h"

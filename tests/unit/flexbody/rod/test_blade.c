@@ -4,7 +4,6 @@
 #include "tests/unit/sample_rod.h"
 
 #include "flexbody/rod/rod_modes.h"
-#include "flexbody/rod/rod_static.h"
 #include "flexbody/section/section.h"
 
 typedef struct blade {

@@ -5,7 +5,6 @@
 
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_load.h"
-#include "flexbody/rod/rod_static.h"
 
 enum { STEPS = 123000 }; // of the integrals along the blade, half a millimetre each
 

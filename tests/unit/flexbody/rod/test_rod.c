@@ -1,5 +1,4 @@
 // The rod's forces and balances; its tangents are under the contract in test_rod_system.c.
-#include "tests/unit/check.h"
 
 #include "core/base/spatial.h"
 #include "flexbody/rod/rod_system.h"

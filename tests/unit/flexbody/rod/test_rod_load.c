@@ -1,5 +1,4 @@
 // Loads along a rod as loads on its vertices.
-#include "tests/unit/check.h"
 
 #include "flexbody/rod/rod_load.h"
 #include "tests/unit/sample_rod.h"

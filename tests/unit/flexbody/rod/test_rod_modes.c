@@ -1,5 +1,4 @@
 // Eigenvalues of the rod against closed forms and independent solutions.
-#include "tests/unit/check.h"
 
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_modes.h"

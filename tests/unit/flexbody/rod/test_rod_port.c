@@ -1,6 +1,5 @@
 // A rod that carries bodies: its last vertex moves as an input says and returns a wrench. The rest of
 // test_rod.c and test_rod_system.c is about the port at the root.
-#include "tests/unit/check.h"
 
 #include "flexbody/rod/rod_system.h"
 #include "tests/unit/contract.h"

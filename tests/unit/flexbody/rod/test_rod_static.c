@@ -1,8 +1,6 @@
 // Static shapes of the rod: analytic ones first, then order of convergence, then reference values.
-#include "tests/unit/check.h"
 
 #include "flexbody/rod/rod_load.h"
-#include "flexbody/rod/rod_static.h"
 #include "flexbody/section/section.h"
 #include "tests/unit/sample_rod.h"
 

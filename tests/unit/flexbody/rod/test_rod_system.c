@@ -1,6 +1,5 @@
 // The rod behind the contract: its operations against each other, and its motion by its own steps
 // against beam theory and the laws of conservation.
-#include "tests/unit/check.h"
 
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_system.h"
