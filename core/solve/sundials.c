@@ -416,6 +416,9 @@ static int arkode_end(run *r) {
         ARKStepSetLinSysFn(r->memory, arkode_tangents) | ARKStepSetMaxErrTestFails(r->memory, most_failures);
     // the rate of a stage is what gave its value, not f of it, which would amplify a stiff error
     bad |= ARKStepSetDeduceImplicitRhs(r->memory, SUNTRUE);
+    // with the default of 0.1 a stage at a loose tolerance ends after one iteration: an error that the
+    // estimate of a step does not see
+    bad |= ARKStepSetNonlinConvCoef(r->memory, 0.01);
     // ARKODE carries the convergence rate of exact factors over to steps of another length and
     // then stops after one iteration: a wrong stiff state without a sign. Factors are cheap.
     bad |= ARKStepSetDeltaGammaMax(r->memory, 1e-9);

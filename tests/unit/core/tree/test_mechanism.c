@@ -246,6 +246,24 @@ TEST(closed_loops_come_to_rest) {
     check_near(channel(&f, "crankPos"), angle, 0, 1e-7);
 }
 
+// A stage that ended after one iteration of Newton's method would err by ten times as much.
+TEST(stages_at_a_loose_tolerance_converge) {
+    const char *const loose[] = {"simulation.master={solver: arkode-esdirk, rtol: 1e-4}", NULL};
+    const char *const tight[] = {"simulation.master={solver: ida, rtol: 1e-9}", NULL};
+    built f = built_open("apps/mechanisms/four-bar.yaml", loose);
+    built truth = built_open("apps/mechanisms/four-bar.yaml", tight);
+    double off = 0, most = 0;
+    for (double t = 0.1; t < 3; t += 0.1) {
+        run_until(&f, t);
+        run_until(&truth, t);
+        double exact = channel(&truth, "rightVel");
+        off = fmax(off, fabs(channel(&f, "rightVel") - exact));
+        most = fmax(most, fabs(exact));
+    }
+    print_message("off by %.2g of %.3g\n", off, most);
+    assert_true(off < 1e-4 * most);
+}
+
 // With a crank, coupler and rocker that weigh little against the rod the frozen coupling grows.
 TEST(stability_of_closed_loops_is_judged) {
     static const char *const names[] = {"frozen", "ramp"};
