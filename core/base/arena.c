@@ -9,11 +9,12 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { ALIGNMENT = 64, PAGE = 1 << 21, LARGE = PAGE / 4 }; // [bytes]; PAGE: of the large ones
+// [bytes]; PAGE: of the large ones
+enum { ALIGNMENT = 64, PAGE = 1 << 21, LARGE = PAGE / 4, MANY = 16 * PAGE };
 
 typedef struct block {
     struct block *next;
-    void *start;             // of the memory taken for it
+    void *start;             // of the memory taken for it; NULL: it is in the pages of an older block
     size_t mapped;           // its size where it is whole pages of the system; 0: malloc's
     void (*release)(void *); // NULL for plain memory
     void *object;
@@ -27,6 +28,8 @@ typedef struct guard {
 struct bough_arena {
     block *newest;
     size_t bytes;
+    char *rest;                         // of mapped pages, behind the blocks in them; zero …
+    size_t left;                        // … its size [bytes]
     guard *guard;                       // the innermost; NULL: none, or a child
     bough_arena *parent, *child, *next; // first child; next child of the same parent
 };
@@ -118,19 +121,34 @@ static void *map_pages(size_t *size) {
 #endif
 }
 
+// A large block behind others in pages that are mapped, *mapped 0, or in new ones: many at once, because the
+// system zeroes each as a whole where it is used. NULL: the system has none.
+static void *take_pages(bough_arena *arena, size_t whole, size_t *mapped) {
+    char *start = arena->rest;
+    if (whole <= arena->left) {
+        arena->rest += whole, arena->left -= whole;
+        return start;
+    }
+    size_t size = whole < MANY ? MANY : whole;
+    start = map_pages(&size);
+    if (!start) return NULL;
+    if (size - whole > arena->left) arena->rest = start + whole, arena->left = size - whole;
+    *mapped = size;
+    return start;
+}
+
 // A block of `size` payload bytes behind an aligned header; NULL when there is none.
 static block *push(bough_arena *arena, size_t size) {
     // no overflow in the rounding to whole pages
     if (size > (size_t)-1 - 2 * PAGE) return NULL;
-    size_t whole = 2 * ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    // the system's fresh pages are zero already and cost nothing until they are used
-    size_t mapped = whole;
-    void *start = whole >= LARGE ? map_pages(&mapped) : NULL;
-    if (!start) mapped = 0, start = calloc(1, whole);
+    size_t whole = 2 * ALIGNMENT + (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT, mapped = 0;
+    void *start = whole >= LARGE ? take_pages(arena, whole, &mapped) : NULL;
+    bool own = !start || mapped > 0;
+    if (!start) start = calloc(1, whole);
     if (!start) return NULL;
     size_t before = (ALIGNMENT - (size_t)start % ALIGNMENT) % ALIGNMENT;
     block *b = (block *)((char *)start + before);
-    b->start = start;
+    b->start = own ? start : NULL;
     b->mapped = mapped;
     b->next = arena->newest;
     arena->newest = b;
