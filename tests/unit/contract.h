@@ -7,8 +7,6 @@
 #include "tests/unit/member.h"
 
 #include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct contract_point {
     double t;            // [s]

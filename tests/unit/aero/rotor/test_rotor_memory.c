@@ -1,8 +1,6 @@
 // What a rotor keeps from sample to sample: dynamic inflow, dynamic stall, its results.
 #include "tests/unit/rotor_rig.h"
 
-#include <stdlib.h>
-
 // -- dynamic inflow ------------------------------------------------------------------------------
 
 static rig *create_inflow_rig(double time) {

@@ -3,7 +3,6 @@
 #include "tests/unit/sample_numbers.h"
 #include "tests/unit/scratch_name.h"
 
-#include <stdlib.h>
 #include <unistd.h>
 
 static const double degree = BOUGH_PI / 180;

@@ -2,8 +2,6 @@
 #include "cosim/watch/monitor.h"
 #include "tests/unit/two_mass.h"
 
-#include <stdlib.h>
-
 static bough_integrator_ops fragile; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 static bough_status (*whole)(void *self, double *t, double t1, bool restart, double *y);
 
