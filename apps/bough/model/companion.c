@@ -164,7 +164,7 @@ static double stale(const bough_companion *c, int i) {
 }
 
 // Whether an error is noticeable and a tenth of what the channel's is so far.
-static bool is_much(const bough_companion *c, int i, double error) {
+static bool is_large(const bough_companion *c, int i, double error) {
     double accuracy = c->run->scene->simulation.accuracy;
     return error > 0.1 * c->error[i] && error > 0.1 * accuracy * bough_error_range(c, i) &&
            bough_error_counts(c, i);
@@ -182,7 +182,7 @@ static void compare_finer(bough_companion *c) {
         if (held && channel->sampled) continue; // an older sample than the finer one
         double error = f->share * fabs(difference(channel, c->value[i], f->other.value[i]));
         if (!(error > c->least[i])) continue;
-        grows = grows || is_much(c, i, error);
+        grows = grows || is_large(c, i, error);
         c->least[i] = error;
         if (c->error[i] < error) c->error[i] = error;
     }

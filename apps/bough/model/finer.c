@@ -16,16 +16,14 @@ static const double little = 3e6;
 static const double least_jump = 0.1;
 
 // Whether the run errs by a coupling or by fixed steps, whatever its tolerance.
-static bool errs_apart_from_tolerance(const bough_scene *scene) {
-    return bough_coarser_share(scene, scene) == 1;
-}
+static bool errs_at_any_tolerance(const bough_scene *scene) { return bough_coarser_share(scene, scene) == 1; }
 
 // Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A third copy of a
 // library would write to the companion's file.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
     double rtol = fmax(scene->simulation.master.rtol, bough_scene_loosest_rtol(scene));
-    return (rtol >= tight || scene->aero.node || errs_apart_from_tolerance(scene)) && !scene->control.library;
+    return (rtol >= tight || scene->aero.node || errs_at_any_tolerance(scene)) && !scene->control.library;
 }
 
 // Stores the memory of the sampled loads of a simulation.
@@ -41,7 +39,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     if (!is_wanted(scene)) return bough_ok();
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
-    f->share = errs_apart_from_tolerance(scene) ? 1 : bough_finer_time_share();
+    f->share = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_share();
     f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
     f->n_jump = bough_jump_times(scene, least_jump, NULL);
     f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
