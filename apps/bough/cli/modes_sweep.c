@@ -1,6 +1,7 @@
 // bough modes --sweep: the modes of the whole scene over a list of operating points, as a table and a
 // Campbell diagram.
 #include "apps/bough/analysis/vibration.h"
+#include "apps/bough/cases/perform.h"
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/results/folder.h"
@@ -293,7 +294,7 @@ static void name_lines(bough_arena *arena, sweep *s) {
 static void write_table(const void *self, FILE *file) {
     const sweep *s = self;
     fputs("point", file);
-    for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
+    for (int k = 0; k < s->n_key; k++) bough_csv_next(file, s->key[k]);
     fputs(
         ",rotor speed (rpm),line,branch,frequency (Hz),damped frequency (Hz),damping ratio (-),decrement (-),"
         "change of damping ratio over azimuths (-),body,shape,pattern\n",
@@ -301,9 +302,7 @@ static void write_table(const void *self, FILE *file) {
     for (int i = 0; i < s->n_mode; i++) {
         const sweep_mode *m = &s->mode[i];
         fprintf(file, "%d", m->point + 1);
-        for (int k = 0; k < s->n_key; k++) {
-            fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
-        }
+        for (int k = 0; k < s->n_key; k++) bough_csv_next(file, s->value[k * s->n_point + m->point]);
         fprintf(file, ",%.10g,%d,%s", s->speed[m->point], m->line + 1, s->named[m->line]->name);
         bough_modes_write_value(file, m->frequency, m->damped, m->damping);
         fprintf(file, ",%.2g,%s,%s,%s\n", m->damping_change, m->body, m->shape, m->pattern);
