@@ -42,6 +42,17 @@ run 3 'errs by .*; try master.step: .* s or master.solver: rosenbrock' four-bar.
     --set "simulation.master={solver: $alpha}" --set simulation.error_bound=0.01
 run 0 '^largest errors: ' four-bar.yaml --set "$coupled" --set "simulation.master={solver: $alpha, step: 0.2 ms}"
 
+# A method for few states is refused where the scene names it, for the whole and for a rod.
+cat >dense.yaml <<'END'
+simulation: {duration: 0.1 s, macro_step: 10 ms, master: {solver: radau5}}
+bodies:
+  - {name: beam, fidelity: rod, joint: {kind: fixed, parent: ground},
+     rod: {length: 2, segments: 40, stiffness: [1e6, 1e6, 3e6, 300, 300, 250], mass: [3, 0, 0, 1e-3, 1e-3, 0]}}
+END
+run 2 '^bough: error: dense.yaml:1:67: master.solver: .* suits up to 400 states' dense.yaml
+run 2 '^bough: error: --set: micro.solver: beam: .* suits up to 400 states' dense.yaml \
+    --set 'simulation={duration: 0.1 s, macro_step: 10 ms, coupling: {scheme: frozen}, micro: {solver: radau5}}'
+
 # A mesh that is too coarse is the user's choice: a warning with the number of segments, and the shares.
 cat >coarse.yaml <<'END'
 simulation: {duration: 2 s, macro_step: 10 ms, coupling: {scheme: monolithic}, master: {solver: rosenbrock, rtol: 1e-5}}

@@ -70,6 +70,12 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     return options;
 }
 
+// A method that refuses a system stands where the scene names it.
+static bough_status blame_solver(const bough_scene_solver *solver, const char *key, bough_status status) {
+    const bough_node *named = solver->node ? bough_node_find(solver->node, "solver") : NULL;
+    return named ? bough_scene_blame(named, key, status) : status;
+}
+
 static bough_status build_tree(bough_builder *b) {
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
@@ -92,7 +98,8 @@ static bough_status build_tree(bough_builder *b) {
     // with all bodies as one system this method is never used
     if (bough_scheme_at(scene->simulation.coupling.scheme)->one_system) master.kind = BOUGH_ROSENBROCK;
     bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
-    return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
+    return blame_solver(&scene->simulation.master, "master.solver",
+                        bough_member_create(b->arena, &tree, 0, &master, &s->leader));
 }
 
 static bough_status build_rods(bough_builder *b) {
@@ -103,8 +110,12 @@ static bough_status build_rods(bough_builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        BOUGH_TRY(bough_build_beam(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
-                                   motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]));
+        const bough_scene_solver *micro = bough_scene_micro(b->scene, beam->body);
+        bough_integrator_options options = solver_options(micro);
+        bough_system system = {0};
+        BOUGH_TRY(bough_build_beam(b->arena, beam, motion + BOUGH_PORT_OUTPUTS * beam->port, &system));
+        bough_status status = bough_member_create(b->arena, &system, 0, &options, &s->rod[beam->port]);
+        BOUGH_TRY(blame_solver(micro, "micro.solver", status));
     }
     int port = s->n_rod; // of the FMUs, after the rods
     for (int i = 0; i < b->scene->n_body; i++) {
@@ -188,6 +199,8 @@ static bough_status build_master(bough_builder *b) {
     def.load = s->sampled;
     if (sim->initial != BOUGH_SCENE_UNDEFORMED) BOUGH_TRY(find_equilibrium(b->arena, &def.assembly, s));
     bough_status status = bough_master_build(b->arena, &def, &s->master);
+    if (bough_scheme_at(sim->coupling.scheme)->one_system)
+        return blame_solver(&sim->master, "master.solver", status);
     const bough_node *scheme = sim->coupling.node ? bough_node_find(sim->coupling.node, "scheme") : NULL;
     return scheme ? bough_scene_blame(scheme, "coupling.scheme", status) : status;
 }

@@ -228,16 +228,15 @@ static bough_status build_modal(bough_arena *arena, bough_beam *beam, const doub
     return bough_ok();
 }
 
-bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_member *member) {
+bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, const double *input,
+                              bough_system *system) {
     bool rod = beam->body->fidelity == BOUGH_SCENE_ROD;
-    bough_system system = {0};
-    BOUGH_TRY(rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system));
+    BOUGH_TRY(rod ? build_rod(arena, beam, input, system) : build_modal(arena, beam, input, system));
     if (beam->in_ground) {
-        beam->ground = bough_ground_body_create(arena, &system, beam->mesh, beam->loads, beam->modal != NULL);
-        system = bough_ground_body_system(beam->ground);
+        beam->ground = bough_ground_body_create(arena, system, beam->mesh, beam->loads, beam->modal != NULL);
+        *system = bough_ground_body_system(beam->ground);
     }
-    return bough_member_create(arena, &system, 0, &micro, member);
+    return bough_ok();
 }
 
 // -- whole ----------------------------------------------------------------------------------------

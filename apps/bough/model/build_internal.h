@@ -76,8 +76,8 @@ bough_status bough_build_bodies(bough_builder *b);
 
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
-bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_member *member);
+bough_status bough_build_beam(bough_arena *arena, bough_beam *beam, const double *input,
+                              bough_system *system);
 
 // The index of a new marker of the tree.
 int bough_build_marker(bough_builder *b, const char *name, int body, bough_transform placement);

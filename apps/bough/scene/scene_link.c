@@ -115,6 +115,13 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
                            joint->parent_name, fmu ? "an FMU" : "a modal body",
                            fmu ? "let the body that carries it carry them" : "make it a rod");
     }
+    const bough_scene_body *carrier = joint->parent >= 0 ? &s->body[joint->parent] : NULL;
+    if (carrier && carrier->fidelity == BOUGH_SCENE_ROD && carrier->rod.n_segment == 1) {
+        bough_link_at(r, "bodies[%d].rod", joint->parent);
+        bough_schema_error(r, carrier->rod.node, "segments",
+                           "a rod that carries bodies, as '%s', has at least 2 segments, got 1",
+                           s->body[i].name);
+    }
 }
 
 // The first body of the loop of parents that is reached from a body.

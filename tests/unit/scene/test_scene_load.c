@@ -52,6 +52,12 @@ TEST(modal_bodies_are_rods_reduced) {
     refuses(MODAL("modal") "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n",
             "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a modal body, which cannot carry bodies; "
             "make it a rod\n");
+    refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rod\n" JOINT
+                       "    rod: {length: 1, segments: 1, stiffness: [1, 1, 1, 1, 1, 1], "
+                       "mass: [1, 0, 0, 1, 1, 0]}\n"
+                       "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n",
+            "s.yaml:6:32: error: bodies[0].rod.segments: a rod that carries bodies, as 'b', has at least 2 "
+            "segments, got 1\n");
     refuses(MODAL("modal") "loads:\n  - {body: a, at: tip, force: [1, 0, 0], frame: follower}\n",
             "s.yaml:8:49: error: loads[0].frame: 'a' is a modal body, on which loads do not turn "
             "with its sections: make it a rod or give 'frame: body'\n");
