@@ -1,6 +1,6 @@
 #include "apps/bough/model/blade_group.h"
 
-#include "apps/bough/model/shape.h"
+#include "apps/bough/model/section_loads.h"
 
 #include <string.h>
 

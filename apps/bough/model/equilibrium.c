@@ -1,7 +1,7 @@
 #include "apps/bough/model/equilibrium.h"
 
 #include "apps/bough/model/equilibrium_search.h"
-#include "apps/bough/model/shape.h"
+#include "apps/bough/model/section_loads.h"
 #include "core/base/linalg.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 // Loads inside the structure: in sections of rods, on the tower's top, in the rotor's shaft.
 #include "apps/bough/model/build_internal.h"
 #include "apps/bough/model/channel_table.h"
-#include "apps/bough/model/shape.h"
+#include "apps/bough/model/section_loads.h"
 #include "core/base/linalg.h"
 #include "core/tree/loop.h"
 
@@ -16,188 +16,37 @@ typedef struct place {
 } place;
 
 typedef struct sensor {
-    const bough_simulation *simulation;
-    const bough_beam *beam;
+    bough_section_loads loads;
     int n;
     place *place; // (n)
-    bool *kink;   // (n_segment + 1) a concentrated force acts on the vertex
-    bough_rod_scratch scratch;
 } sensor;
 
 enum { PLACE_CHANNELS = 12 };
 
-// Position of a vertex in the body's frame, from scratch->vertex.
-static bough_vec3 vertex_position(const sensor *x, int i) {
-    const double *v = x->scratch.vertex + i;
-    int n = x->beam->mesh->stride;
-    return bough_v3(v[0], v[n], v[2 * n]);
-}
-
-static bough_quaternion vertex_rotation(const sensor *x, int i) {
-    return bough_section_vertex_rotation(x->beam->mesh, &x->scratch, i);
-}
-
 // Rotation vector of a section against the undeformed one, in the body's axes.
 static bough_vec3 vertex_turn(const sensor *x, int i) {
-    bough_quaternion back = bough_quaternion_conjugate(x->beam->def.rotation[i]);
-    return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
-}
-
-// Loads of the sections at both ends, in the body's axes.
-typedef struct end_loads {
-    bough_section_load root, end; // end: of a rod that carries bodies
-} end_loads;
-
-static end_loads loads_at_ends(const sensor *x, double t) {
-    const bough_beam *beam = x->beam;
-    int n = beam->def.n_segment;
-    double w[BOUGH_ROD_MOST_OUTPUTS];
-    bough_simulation_accelerate(x->simulation, t);
-    bough_simulation_root(x->simulation, beam, t, w);
-    bough_vec3 root = bough_v3(w[0], w[1], w[2]), arm = bough_cross(beam->def.position[0], root);
-    bough_mat3 section = bough_rotation_matrix(vertex_rotation(x, n));
-    return (end_loads){
-        {root, bough_sub(bough_v3(w[3], w[4], w[5]), arm)},
-        {bough_v3(-w[6], -w[7], -w[8]), bough_mat3_mul(section, bough_v3(-w[9], -w[10], -w[11]))}};
-}
-
-static double segment_length(const sensor *x, int i) {
-    return x->beam->def.span[i + 1] - x->beam->def.span[i];
-}
-
-static bough_section_load middle_load(const sensor *x, int i) {
-    return bough_section_in_segment(x->beam, &x->scratch, i, 0.5);
-}
-
-// From the middle of a segment to the next place at which the loads are known, the middle of a neighbour or
-// an end of the rod.
-typedef struct neighbour {
-    bool known, inner;        // no concentrated force lies between both; it is a segment
-    double distance;          // [m], negative towards the root
-    bough_section_load slope; // change per length
-} neighbour;
-
-static neighbour neighbour_of(const sensor *x, const end_loads *ends, int i, int sign) {
-    int next = i + sign, n = x->beam->def.n_segment;
-    bool inner = next >= 0 && next < n;
-    bough_section_load from = middle_load(x, i), to = {{0, 0, 0}, {0, 0, 0}};
-    double length = segment_length(x, i) / 2;
-    if (inner) {
-        to = middle_load(x, next);
-        length += segment_length(x, next) / 2;
-    } else if (next < 0) {
-        to = ends->root;
-    } else if (x->beam->end >= 0) {
-        to = ends->end;
-    }
-    bough_vec3 force = bough_sub(to.force, from.force), moment = bough_sub(to.moment, from.moment);
-    bough_section_load slope = {bough_scale(sign / length, force), bough_scale(sign / length, moment)};
-    return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
-}
-
-// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
-// it.
-static bough_vec3 bow_of_loads(const sensor *x, int i) {
-    const bough_rod_model *m = x->beam->mesh;
-    double stiffness[6][6], moment[3] = {0, 0, 0};
-    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
-    for (int k = 0; k < 6; k++) {
-        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
-        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
-    }
-    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
-    return bough_mat3_mul(axes, bough_v3_load(moment));
-}
-
-// theory (119): force in the middle of a segment less that of the segment, whose second derivative is given,
-// by the loads along it and its neighbours, whose mean bow is -(h²/12) d₃×f.
-static bough_vec3 middle_excess(const sensor *x, int i, double distance, bough_vec3 second) {
-    double h = segment_length(x, i);
-    bough_mat3 axes = bough_axes_between(vertex_rotation(x, i), vertex_rotation(x, i + 1), 0.5);
-    bough_vec3 before = bough_scale(pow(segment_length(x, i - 1), -2), bow_of_loads(x, i - 1));
-    bough_vec3 after = bough_scale(pow(segment_length(x, i + 1), -2), bow_of_loads(x, i + 1));
-    bough_vec3 slope = bough_scale(12 / distance, bough_cross(axes.c3, bough_sub(after, before)));
-    return bough_scale(h * h / 24, bough_axpy(2, slope, second));
-}
-
-// The parabola through the middles of three segments, a line next to an end. A concentrated force makes a
-// step at its vertex: towards it the slope of the segment's other half continues.
-static bough_section_load load_between(const sensor *x, const end_loads *ends, place at) {
-    double offset = (at.fraction - 0.5) * segment_length(x, at.segment);
-    bough_section_load middle = middle_load(x, at.segment);
-    neighbour a = neighbour_of(x, ends, at.segment, -1), b = neighbour_of(x, ends, at.segment, 1);
-    bool left = offset < 0 ? a.known : !b.known;
-    double weight = left ? 0 : 1, distance = b.distance - a.distance; // of b's slope
-    if (a.known && b.known && a.inner && b.inner) {
-        weight = (offset - a.distance) / distance;
-        bough_vec3 second = bough_scale(2 / distance, bough_sub(b.slope.force, a.slope.force));
-        middle.force = bough_add(middle.force, middle_excess(x, at.segment, distance, second));
-    } else if (!a.known && !b.known) {
-        return middle;
-    }
-    bough_vec3 force = bough_between(a.slope.force, b.slope.force, weight);
-    bough_vec3 moment = bough_between(a.slope.moment, b.slope.moment, weight);
-    return (bough_section_load){bough_axpy(offset, force, middle.force),
-                                bough_axpy(offset, moment, middle.moment)};
-}
-
-// Change of the moment per length within a segment.
-static bough_vec3 moment_slope(const sensor *x, int i) {
-    bough_vec3 first = bough_section_in_segment(x->beam, &x->scratch, i, 0).moment;
-    bough_vec3 last = bough_section_in_segment(x->beam, &x->scratch, i, 1).moment;
-    return bough_scale(1 / segment_length(x, i), bough_sub(last, first));
-}
-
-// Second derivative of the moment: the mean over the neighbours that no concentrated force separates.
-static bough_vec3 moment_curvature(const sensor *x, int i) {
-    bough_vec3 sum = {0, 0, 0};
-    int count = 0;
-    for (int side = -1; side <= 1; side += 2) {
-        int next = i + side;
-        if (next < 0 || next >= x->beam->def.n_segment || x->kink[i + (side > 0)]) continue;
-        double distance = (segment_length(x, i) + segment_length(x, next)) / 2;
-        bough_vec3 change = bough_sub(moment_slope(x, next), moment_slope(x, i));
-        sum = bough_axpy(side / distance, change, sum);
-        count++;
-    }
-    return count > 1 ? bough_scale(0.5, sum) : sum;
-}
-
-// theory (118): a parabola of known mean over the segment. In the outer half of the first and the last
-// segment it ends at the moment of the root and of the end.
-static bough_vec3 bending_at(const sensor *x, const end_loads *ends, place at) {
-    const bough_beam *beam = x->beam;
-    int i = at.segment, n = beam->def.n_segment;
-    double f = at.fraction, square = segment_length(x, i) * segment_length(x, i);
-    bough_vec3 bend = bough_scale(square / 2, moment_curvature(x, i)), mean = bow_of_loads(x, i);
-    bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
-    if (i == 0 && f < 0.5)
-        return bough_axpy(f * (f - 0.5), bend, bough_between(ends->root.moment, middle, 2 * f));
-    if (i == n - 1 && f > 0.5 && !x->kink[n]) {
-        bough_vec3 end = beam->end >= 0 ? ends->end.moment : bough_v3(0, 0, 0);
-        return bough_axpy((f - 0.5) * (f - 1), bend, bough_between(middle, end, 2 * f - 1));
-    }
-    bough_vec3 linear = bough_section_in_segment(beam, &x->scratch, i, f).moment;
-    return bough_axpy((f - 0.5) * (f - 0.5) - 1. / 12, bend, bough_add(mean, linear));
+    bough_quaternion back = bough_quaternion_conjugate(x->loads.beam->def.rotation[i]);
+    return bough_quaternion_logarithm(
+        bough_quaternion_product(bough_section_loads_rotation(&x->loads, i), back));
 }
 
 // Displacement of a vertex, and slope of the axis there by rotation, (R − R₀) e₃, in the body's axes.
 static bough_vec3 vertex_shift(const sensor *x, int i) {
-    return bough_sub(vertex_position(x, i), x->beam->def.position[i]);
+    return bough_sub(bough_section_loads_position(&x->loads, i), x->loads.beam->def.position[i]);
 }
 
 static bough_vec3 vertex_slope(const sensor *x, int i) {
-    bough_mat3 now = bough_rotation_matrix(vertex_rotation(x, i));
-    return bough_sub(now.c3, bough_rotation_matrix(x->beam->def.rotation[i]).c3);
+    bough_mat3 now = bough_rotation_matrix(bough_section_loads_rotation(&x->loads, i));
+    return bough_sub(now.c3, bough_rotation_matrix(x->loads.beam->def.rotation[i]).c3);
 }
 
 // Change of the curvature over the segment of a place whose sections have these axes, by its moments.
 static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *axes) {
-    bough_vec3 first = bough_section_in_segment(x->beam, &x->scratch, at.segment, 0).moment;
-    bough_vec3 last = bough_section_in_segment(x->beam, &x->scratch, at.segment, 1).moment;
     double m[3], k[3] = {0, 0, 0}, compliance[21];
-    bough_v3_store(bough_mat3_tmul(*axes, bough_sub(last, first)), m);
-    if (bough_symmetric6_inverse(x->beam->def.stiffness + 21 * at.segment, compliance))
+    bough_vec3 moment[2];
+    bough_section_loads_linear(&x->loads, at.segment, moment);
+    bough_v3_store(bough_mat3_tmul(*axes, bough_sub(moment[1], moment[0])), m);
+    if (bough_symmetric6_inverse(x->loads.beam->def.stiffness + 21 * at.segment, compliance))
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) k[i] += compliance[bough_symmetric6_index(3 + i, 3 + j)] * m[j];
     return bough_mat3_mul(*axes, bough_v3(k[0], k[1], k[2]));
@@ -205,29 +54,25 @@ static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *
 
 // Between vertices displacement and rotation are parabolas, whose second derivatives follow from the slopes
 // and the moments at both.
-static void sample_place(const sensor *x, const end_loads *ends, place at, double *value) {
+static void sample_place(const sensor *x, place at, double *value) {
     int left = at.segment, right = left + 1;
-    bough_mat3 axes = bough_axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.fraction);
-    double bow = at.fraction * (at.fraction - 1) / 2 * segment_length(x, left);
+    const double *span = x->loads.beam->def.span;
+    bough_mat3 axes;
+    bough_section_load load = bough_section_loads_at(&x->loads, at.segment, at.fraction, &axes);
+    double bow = at.fraction * (at.fraction - 1) / 2 * (span[right] - span[left]);
     bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at.fraction);
     shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
     bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
     turn = bough_axpy(bow, curvature_change(x, at, &axes), turn);
-    // a segment's moment has no slope in torsion
-    bough_section_load load = load_between(x, ends, at);
-    bough_vec3 force = bough_mat3_tmul(axes, load.force);
-    bough_vec3 moment = bough_mat3_tmul(axes, bending_at(x, ends, at));
-    moment.z = bough_mat3_tmul(axes, load.moment).z;
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
-    bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
+    bough_observe_vector(load.moment, 1e3, bough_observe_vector(load.force, 1e3, value));
 }
 
 static void sample_sections(void *self, double t, double *value) {
     sensor *x = self;
-    bool good = bough_section_evaluate(x->simulation, x->beam, t, &x->scratch);
-    end_loads ends = loads_at_ends(x, t);
+    bool good = bough_section_loads_evaluate(&x->loads, t);
     for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
-        sample_place(x, &ends, x->place[k], value);
+        sample_place(x, x->place[k], value);
         for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;
     }
 }
@@ -236,22 +81,6 @@ static place find_place(const bough_rod_def *def, double span) {
     int i = 0;
     while (i < def->n_segment - 1 && def->span[i + 1] <= span) i++;
     return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
-}
-
-// Marks vertices with concentrated loads; of a load within a segment both vertices of the segment.
-static void mark_kinks(const bough_scene *scene, const bough_beam *beam, bool *kink) {
-    int n = beam->def.n_segment;
-    for (int k = 0; k < scene->n_load; k++) {
-        const bough_scene_load *load = &scene->load[k];
-        if (load->body_name == NULL || &scene->body[load->body] != beam->body) continue;
-        if (load->place == BOUGH_SCENE_AT_VERTEX) kink[load->vertex] = true;
-        if (load->place == BOUGH_SCENE_AT_TIP) kink[n] = true;
-        if (load->place != BOUGH_SCENE_AT_SPAN) continue;
-        place at = find_place(&beam->def, load->span[0]);
-        kink[at.segment] |= at.fraction < 1;
-        kink[at.segment + 1] |= at.fraction > 0;
-    }
-    kink[n] &= beam->end < 0; // the wrench of bodies on the end is known
 }
 
 // Blades and a tower of one rod have OpenFAST's names.
@@ -272,15 +101,13 @@ static void add_place(const bough_simulation *s, const bough_beam *beam, int num
 static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, bough_channels *list) {
     bough_arena *arena = list->arena;
     sensor *x = bough_arena_take(arena, sizeof *x);
-    *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, NULL, {0}};
+    const bough_beam *beam = bough_simulation_beam(s, from->body);
+    *x = (sensor){bough_section_loads_create(arena, s, beam), from->n_at, NULL};
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
-    x->kink = bough_arena_take(arena, ((size_t)x->beam->def.n_segment + 1) * sizeof *x->kink);
-    mark_kinks(s->scene, x->beam, x->kink);
-    bough_rod_scratch_init(&x->scratch, arena, x->beam->mesh);
     bough_channels_group(list, sample_sections, x);
     for (int k = 0; k < x->n; k++) {
-        x->place[k] = find_place(&x->beam->def, from->at[k]);
-        add_place(s, x->beam, k + 1, list);
+        x->place[k] = find_place(&beam->def, from->at[k]);
+        add_place(s, beam, k + 1, list);
     }
 }
 

@@ -32,6 +32,26 @@ TEST(tip_force_passes_all_sections) {
     assert_true(moment[1] > 3); // bent far: 10 N m on the straight rod
 }
 
+// An inclined bar of 2 kg/m and 2 m: the force of a vertex is the weight above it.
+TEST(the_loads_of_a_vertex_are_those_of_the_section) {
+    check_arena(arena);
+    bough_simulation *s = scene_build_text(
+        arena,
+        "gravity: [0, 0, -10]\nsimulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+        "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 60 deg]},\n"
+        "     rod: {length: 2, segments: 5, stiffness: [1e8, 1e8, 1e8, 1e7, 1e7, 1e7],\n"
+        "           mass: [2, 0, 0, 0.1, 0.1, 0]}}\n");
+    bough_shape shape;
+    bough_shape_create(arena, s, &shape);
+    double force[18], moment[18];
+    bough_shape_loads(&shape, 0, force, moment);
+    for (int i = 0; i < 6; i++) {
+        double beyond = 2 - 0.4 * i;
+        check_near(force[3 * i + 2], -20 * beyond, 0, 1e-4);
+        check_near(moment[3 * i + 1], 10 * beyond * beyond * sin(60 * BOUGH_DEGREE), 0, 1e-4);
+    }
+}
+
 // A rigid body has no sections.
 TEST(rigid_bodies_carry_no_section_loads) {
     const char *sets[] = {NULL};

@@ -1,0 +1,233 @@
+#include "apps/bough/model/section_loads.h"
+
+#include "core/base/linalg.h"
+
+// -- segments -------------------------------------------------------------------------------------
+
+static bough_vec3 segment_row(const bough_section_loads *x, int i, int row) {
+    const double *f = x->scratch.segment + i;
+    int n = x->beam->mesh->stride;
+    return bough_v3(f[row * n], f[(row + 1) * n], f[(row + 2) * n]);
+}
+
+bough_quaternion bough_section_loads_rotation(const bough_section_loads *x, int vertex) {
+    const double *p = x->scratch.vertex + vertex;
+    int n = x->beam->mesh->stride;
+    return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
+}
+
+bough_vec3 bough_section_loads_position(const bough_section_loads *x, int vertex) {
+    const double *v = x->scratch.vertex + vertex;
+    int n = x->beam->mesh->stride;
+    return bough_v3(v[0], v[n], v[2 * n]);
+}
+
+static bough_mat3 vertex_axes(const bough_section_loads *x, int i) {
+    return bough_rotation_matrix(bough_section_loads_rotation(x, i));
+}
+
+void bough_section_loads_linear(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
+    moment[0] = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
+    moment[1] = bough_scale(-1, bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6)));
+}
+
+// The axes of the section at a fraction of a segment's length.
+static bough_mat3 axes_at(const bough_section_loads *x, int i, double fraction) {
+    return bough_axes_between(bough_section_loads_rotation(x, i), bough_section_loads_rotation(x, i + 1),
+                              fraction);
+}
+
+static double segment_length(const bough_section_loads *x, int i) {
+    return x->beam->def.span[i + 1] - x->beam->def.span[i];
+}
+
+// The force of a segment is constant over its length.
+static bough_section_load middle_load(const bough_section_loads *x, int i) {
+    bough_vec3 moment[2];
+    bough_section_loads_linear(x, i, moment);
+    return (bough_section_load){segment_row(x, i, 0), bough_between(moment[0], moment[1], 0.5)};
+}
+
+// -- force and torsional moment -------------------------------------------------------------------
+
+// From the middle of a segment to the next place at which the loads are known, the middle of a neighbour or
+// an end of the rod.
+typedef struct neighbour {
+    bool known, inner;        // no concentrated force lies between both; it is a segment
+    double distance;          // [m], negative towards the root
+    bough_section_load slope; // change per length
+} neighbour;
+
+static neighbour neighbour_of(const bough_section_loads *x, int i, int sign) {
+    int next = i + sign, n = x->beam->def.n_segment;
+    bool inner = next >= 0 && next < n;
+    bough_section_load from = middle_load(x, i), to = {{0, 0, 0}, {0, 0, 0}};
+    double length = segment_length(x, i) / 2;
+    if (inner) {
+        to = middle_load(x, next);
+        length += segment_length(x, next) / 2;
+    } else if (next < 0) {
+        to = x->root;
+    } else if (x->beam->end >= 0) {
+        to = x->end;
+    }
+    bough_vec3 force = bough_sub(to.force, from.force), moment = bough_sub(to.moment, from.moment);
+    bough_section_load slope = {bough_scale(sign / length, force), bough_scale(sign / length, moment)};
+    return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
+}
+
+// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
+// it.
+static bough_vec3 bow_of_loads(const bough_section_loads *x, int i) {
+    const bough_rod_model *m = x->beam->mesh;
+    double stiffness[6][6], moment[3] = {0, 0, 0};
+    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
+    for (int k = 0; k < 6; k++) {
+        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
+        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
+    }
+    return bough_mat3_mul(axes_at(x, i, 0.5), bough_v3_load(moment));
+}
+
+// theory (119): force in the middle of a segment less that of the segment. The loads along it and its
+// neighbours follow from the mean bow, -(h²/12) d₃×f.
+static bough_vec3 middle_excess(const bough_section_loads *x, int i, const neighbour *a, const neighbour *b) {
+    int left = i - a->inner, right = i + b->inner;
+    double h = segment_length(x, i), distance = b->distance - a->distance; // between the places
+    double between = (b->inner ? b->distance : 0) - (a->inner ? a->distance : 0);
+    double ends = (b->inner ? 0 : 1 / b->distance) - (a->inner ? 0 : 1 / a->distance);
+    bough_vec3 before = bough_scale(pow(segment_length(x, left), -2), bow_of_loads(x, left));
+    bough_vec3 after = bough_scale(pow(segment_length(x, right), -2), bow_of_loads(x, right));
+    bough_vec3 slope = bough_cross(axes_at(x, i, 0.5).c3, bough_sub(after, before));
+    bough_vec3 second = bough_scale(2 / distance, bough_sub(b->slope.force, a->slope.force));
+    double part = h * h / (24 + 2 * h * h * ends / distance);
+    return bough_scale(part, bough_axpy(24 / between, slope, second));
+}
+
+// The parabola through the middles of three segments, or of two and an end. A concentrated force makes a
+// step at its vertex: towards it the slope of the segment's other half continues.
+static bough_section_load load_between(const bough_section_loads *x, int i, double fraction) {
+    double offset = (fraction - 0.5) * segment_length(x, i);
+    bough_section_load middle = middle_load(x, i);
+    neighbour a = neighbour_of(x, i, -1), b = neighbour_of(x, i, 1);
+    bool left = offset < 0 ? a.known : !b.known;
+    double weight = left ? 0 : 1; // of b's slope
+    if (a.known && b.known && (a.inner || b.inner)) {
+        weight = (offset - a.distance) / (b.distance - a.distance);
+        bough_vec3 excess = middle_excess(x, i, &a, &b);
+        middle.force = bough_add(middle.force, excess);
+        // a neighbour has the same excess, an end none
+        if (!a.inner) a.slope.force = bough_axpy(-1 / a.distance, excess, a.slope.force);
+        if (!b.inner) b.slope.force = bough_axpy(-1 / b.distance, excess, b.slope.force);
+    } else if (!a.known && !b.known) {
+        return middle;
+    }
+    bough_vec3 force = bough_between(a.slope.force, b.slope.force, weight);
+    bough_vec3 moment = bough_between(a.slope.moment, b.slope.moment, weight);
+    return (bough_section_load){bough_axpy(offset, force, middle.force),
+                                bough_axpy(offset, moment, middle.moment)};
+}
+
+// -- bending moment -------------------------------------------------------------------------------
+
+// From the left to the right vertex, per length.
+static bough_vec3 chord(const bough_section_loads *x, int i) {
+    bough_vec3 from = bough_section_loads_position(x, i), to = bough_section_loads_position(x, i + 1);
+    return bough_scale(1 / segment_length(x, i), bough_sub(to, from));
+}
+
+// Second derivative of the moment, the mean over the neighbours that no concentrated force separates;
+// `curved`: the part that the forces have as the chords turn.
+static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_vec3 *curved) {
+    bough_vec3 loaded = {0, 0, 0}, force = segment_row(x, i, 0);
+    int count = 0;
+    *curved = loaded;
+    for (int side = -1; side <= 1; side += 2) {
+        int next = i + side;
+        if (next < 0 || next >= x->beam->def.n_segment || x->kink[i + (side > 0)]) continue;
+        double distance = side * (segment_length(x, i) + segment_length(x, next)) / 2;
+        bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_row(x, next, 0);
+        bough_vec3 along = bough_between(chord(x, i), chord(x, next), 0.5);
+        bough_vec3 change = bough_cross(bough_sub(other, force), along);
+        loaded = bough_axpy(1 / distance, change, loaded);
+        *curved = bough_axpy(1 / distance, bough_cross(bough_between(force, other, 0.5), turn), *curved);
+        count++;
+    }
+    *curved = bough_scale(count > 1 ? 0.5 : 1, *curved);
+    return bough_add(*curved, bough_scale(count > 1 ? 0.5 : 1, loaded));
+}
+
+// theory (118): a parabola of known mean over the segment. In the outer half of the first and the last
+// segment it ends at the moment of the root and of the end.
+static bough_vec3 bending_at(const bough_section_loads *x, int i, double f) {
+    const bough_beam *beam = x->beam;
+    int n = beam->def.n_segment;
+    double square = segment_length(x, i) * segment_length(x, i);
+    bough_vec3 curved, bend = bough_scale(square / 2, moment_curvature(x, i, &curved)), linear[2];
+    bough_vec3 mean = bough_axpy(-square / 12, curved, bow_of_loads(x, i));
+    bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
+    if (i == 0 && f < 0.5)
+        return bough_axpy(f * (f - 0.5), bend, bough_between(x->root.moment, middle, 2 * f));
+    if (i == n - 1 && f > 0.5 && !x->kink[n]) {
+        bough_vec3 end = beam->end >= 0 ? x->end.moment : bough_v3(0, 0, 0);
+        return bough_axpy((f - 0.5) * (f - 1), bend, bough_between(middle, end, 2 * f - 1));
+    }
+    bough_section_loads_linear(x, i, linear);
+    bough_vec3 straight = bough_between(linear[0], linear[1], f);
+    return bough_axpy((f - 0.5) * (f - 0.5) - 1. / 12, bend, bough_add(mean, straight));
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+// Of a load within a segment both vertices of the segment are marked.
+static bool *find_kinks(bough_arena *arena, const bough_scene *scene, const bough_beam *beam) {
+    int n = beam->def.n_segment;
+    const double *span = beam->def.span;
+    bool *kink = bough_arena_take(arena, ((size_t)n + 1) * sizeof *kink);
+    for (int k = 0; k < scene->n_load; k++) {
+        const bough_scene_load *load = &scene->load[k];
+        if (load->body_name == NULL || &scene->body[load->body] != beam->body) continue;
+        if (load->place == BOUGH_SCENE_AT_VERTEX) kink[load->vertex] = true;
+        if (load->place == BOUGH_SCENE_AT_TIP) kink[n] = true;
+        for (int i = 0; load->place == BOUGH_SCENE_AT_SPAN && i < n; i++) {
+            kink[i] |= load->span[0] >= span[i] && load->span[0] < span[i + 1];
+            kink[i + 1] |= load->span[0] > span[i] && load->span[0] <= span[i + 1];
+        }
+    }
+    kink[n] &= beam->end < 0; // the wrench of bodies on the end is known
+    return kink;
+}
+
+bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
+                                               const bough_beam *beam) {
+    bough_section_loads x = {.simulation = s, .beam = beam, .kink = find_kinks(arena, s->scene, beam)};
+    bough_rod_scratch_init(&x.scratch, arena, beam->mesh);
+    return x;
+}
+
+bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
+    const bough_simulation *s = x->simulation;
+    const bough_beam *beam = x->beam;
+    const bough_rod_model *m = beam->mesh;
+    bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), &x->scratch);
+    bough_rod_load(m, beam->loads, t, &x->scratch);
+    bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    double w[BOUGH_ROD_MOST_OUTPUTS];
+    bough_simulation_accelerate(s, t);
+    bough_simulation_root(s, beam, t, w);
+    bough_vec3 root = bough_v3(w[0], w[1], w[2]), arm = bough_cross(beam->def.position[0], root);
+    x->root = (bough_section_load){root, bough_sub(bough_v3(w[3], w[4], w[5]), arm)};
+    if (beam->end < 0) return finite;
+    bough_vec3 moment = bough_mat3_mul(vertex_axes(x, m->n_segment), bough_v3(w[9], w[10], w[11]));
+    x->end = (bough_section_load){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
+    return finite;
+}
+
+bough_section_load bough_section_loads_at(const bough_section_loads *x, int segment, double fraction,
+                                          bough_mat3 *axes) {
+    *axes = axes_at(x, segment, fraction);
+    bough_section_load load = load_between(x, segment, fraction);
+    bough_vec3 moment = bough_mat3_tmul(*axes, bending_at(x, segment, fraction));
+    moment.z = bough_mat3_tmul(*axes, load.moment).z; // a segment's moment has no slope in torsion
+    return (bough_section_load){bough_mat3_tmul(*axes, load.force), moment};
+}

@@ -1,0 +1,46 @@
+// Forces and moments in the sections of a rod, between its vertices too.
+#ifndef BOUGH_APPS_MODEL_SECTION_LOADS_H
+#define BOUGH_APPS_MODEL_SECTION_LOADS_H
+
+#include "apps/bough/model/simulation.h"
+#include "core/base/rotation.h"
+
+// Axes between two rotations: p at fraction 0, q at fraction 1.
+static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double fraction) {
+    bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
+    bough_vec3 part = bough_scale(fraction, bough_quaternion_logarithm(step));
+    return bough_rotation_matrix(bough_quaternion_product(p, bough_quaternion_exponential(part)));
+}
+
+typedef struct bough_section_load {
+    bough_vec3 force, moment; // of the outer part on the inner part [N], [N m]
+} bough_section_load;
+
+typedef struct bough_section_loads {
+    const bough_simulation *simulation;
+    const bough_beam *beam;
+    bool *kink;                   // (n_segment + 1) a concentrated force acts on the vertex
+    bough_rod_scratch scratch;    // vertices and segments at the evaluation
+    bough_section_load root, end; // in the body's axes; end: of a rod that carries bodies
+} bough_section_loads;
+
+// Of a body of fidelity rod.
+bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
+                                               const bough_beam *beam);
+
+// Evaluates the rod at the current synchronisation point, time t [s]. False when the forces are not finite.
+bool bough_section_loads_evaluate(bough_section_loads *x, double t);
+
+// Load of the section at a fraction of a segment's length, in the section's axes; `axes`: these in the
+// body's.
+bough_section_load bough_section_loads_at(const bough_section_loads *x, int segment, double fraction,
+                                          bough_mat3 *axes);
+
+// The moments of a segment, linear over its length, at its two vertices, in the body's axes [N m].
+void bough_section_loads_linear(const bough_section_loads *x, int segment, bough_vec3 moment[2]);
+
+// Position of a vertex [m] and rotation of the section there, in the body's frame.
+bough_vec3 bough_section_loads_position(const bough_section_loads *x, int vertex);
+bough_quaternion bough_section_loads_rotation(const bough_section_loads *x, int vertex);
+
+#endif
