@@ -151,8 +151,9 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
         SAME("AB{a}N{b}Cm", "-", "moment coefficient"),
         SAME("AB{a}N{b}Fx", "N/m", "force per length normal to the rotor plane"),
         SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive where it drives the rotor")), .sampled = BOUGH_BY_AIR},
+    [BOUGH_CHANNELS_GENERATOR] = {"Generator", NULL, ROWS(
+        SAME("GenSpeed", "rpm", "speed of the generator: speed of the rotor's joint times the gear ratio"))},
     [BOUGH_CHANNELS_CONTROL] = {"Control", NULL, ROWS(
-        SAME("GenSpeed", "rpm", "speed of the generator: speed of the rotor's joint times the gear ratio"),
         SAME("GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes, as demanded at the last sample of the control"),
         SAME("GenPwr", "kW", "electrical power, at the last sample of the control")), .sampled = BOUGH_BY_CONTROL},
     [BOUGH_CHANNELS_PITCH] = {"Control of a turbine's blades", numbered, ROWS(

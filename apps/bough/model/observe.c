@@ -404,7 +404,8 @@ static void sample_law(void *self, double t, double *value) {
 
 static void add_control(bough_simulation *s, bough_channels *list) {
     int n_blade = s->scene->turbine.n_blade;
-    bough_channel_group_add(list, sample_control, s, BOUGH_CHANNELS_CONTROL);
+    bough_channel_group_add(list, sample_control, s, BOUGH_CHANNELS_GENERATOR);
+    bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
     add_each(s, list, NULL, BOUGH_CHANNELS_PITCH, n_blade, NULL);
     if (s->scene->control.kind != BOUGH_SCENE_EXTERNAL) return;
     bough_channel_group_add(list, sample_law, s, BOUGH_CHANNELS_LAW);
