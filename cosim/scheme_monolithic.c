@@ -42,21 +42,28 @@ static void find_right_side(const stages *s, int i) {
     bough_rosenbrock_right_side(s->step, s->stage, offset[0], offset[1]);
 }
 
+// Tasks of a stage before those of the leaders: an empty one follows those of an odd number of followers, so
+// that of two threads the caller, which is done with its followers first, has the first leader.
+static int tasks_of_followers(const stages *s) {
+    return 2 * s->assembly->n_follower + s->assembly->n_follower % 2;
+}
+
 // The tasks of a stage: right sides of the followers, their solutions, then the leaders, whose inputs wait
 // for the outputs of all followers. With two tasks for each follower, three followers make the same work for
 // both of two threads.
 static void find_and_solve(void *self, int k) {
     const stages *s = self;
-    const int *member = s->assembly->by_role, n = s->assembly->n_follower;
+    const int *member = s->assembly->by_role, n = s->assembly->n_follower, first = tasks_of_followers(s);
     if (k < n) {
         find_right_side(s, member[k]);
     } else if (k < 2 * n) {
         bough_pool_await(s->factors->pool, k - n);
         bough_whole_solve_of(s->factors, member[k - n]);
-    } else {
+    } else if (k >= first) {
+        int leader = member[n + k - first];
         for (int j = 0; j < n; j++) bough_pool_await(s->factors->pool, j);
-        find_right_side(s, member[k - n]);
-        bough_whole_solve_of(s->factors, member[k - n]);
+        find_right_side(s, leader);
+        bough_whole_solve_of(s->factors, leader);
     }
 }
 
@@ -90,7 +97,8 @@ static bool take_stage(stages *s) {
     begin_rates(s, s->stage == 0 ? step->y : step->at);
     // every member by itself
     bough_whole_begin_solution(s->factors, step->u[s->stage]);
-    bough_pool_run(s->factors->pool, n_member + s->assembly->n_follower, find_and_solve, s);
+    int n_leader = n_member - s->assembly->n_follower;
+    bough_pool_run(s->factors->pool, tasks_of_followers(s) + n_leader, find_and_solve, s);
     // the interface; the members' responses to it follow with the next stage
     bough_whole_solve_interface(s->factors);
     bough_status status = bough_whole_failure(s->evaluation[0]);
