@@ -179,6 +179,11 @@ double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
     return share;
 }
 
+double bough_coarser_air_share(const bough_scene *scene, const bough_scene *other) {
+    bool halved = holds_loads(scene) && other->aero.rate > scene->aero.rate;
+    return halved ? bough_finer_air_share(scene) : usual_share(scene);
+}
+
 // -- time -----------------------------------------------------------------------------------------
 
 // Tolerance and longest step over the run's.

@@ -53,9 +53,10 @@ static void expect_jumps(bough_companion *c) {
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
     BOUGH_TRY(bough_finer_build(arena, c->run, &c->finer));
-    c->share = bough_coarser_share(c->run->scene, c->coarser.simulation->scene);
-    if (bough_coarser_is_loose(c->run->scene)) c->share = fmax(c->share, bough_finer_time_share());
-    c->share_held = share_held(c->run->scene);
+    const bough_scene *scene = c->run->scene, *other = c->coarser.simulation->scene;
+    c->share = fmax(bough_coarser_share(scene, other), bough_coarser_air_share(scene, other));
+    if (bough_coarser_is_loose(scene)) c->share = fmax(c->share, bough_finer_time_share());
+    c->share_held = share_held(scene);
     take_record(c, arena);
     expect_jumps(c);
     return bough_ok();

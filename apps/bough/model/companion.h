@@ -42,6 +42,10 @@ bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulati
 // less than a factor of two; 1 if the mesh is finer or the coupling explicit.
 double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
 
+// The same for the part of the air: loads held constant, an error of order 1, err by twice the difference to
+// a copy of twice the rate.
+double bough_coarser_air_share(const bough_scene *scene, const bough_scene *other);
+
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_share(const bough_scene *scene);
 

@@ -147,9 +147,9 @@ static bough_status run_beside(bough_arena *arena, void *self) {
 static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
 
 static between between_companion_and(const bough_companion *c, int kind, double *largest) {
-    const bough_scene *run = c->run->scene;
-    double part = kind == BOUGH_SHARE_MESH  ? bough_coarser_share(run, c->coarser.simulation->scene)
-                  : kind == BOUGH_SHARE_AIR ? bough_coarser_share(run, run)
+    const bough_scene *run = c->run->scene, *other = c->coarser.simulation->scene;
+    double part = kind == BOUGH_SHARE_MESH               ? bough_coarser_share(run, other)
+                  : kind == BOUGH_SHARE_AIR              ? bough_coarser_air_share(run, other)
                   : c->coarser.simulation->master->split ? bough_finer_time_share()
                                                          : bough_coarser_time_share(run);
     // channels that the companion holds longer are held longer in two of the further runs, too
