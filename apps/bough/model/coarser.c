@@ -394,8 +394,15 @@ bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *r
     return bough_ok();
 }
 
-// The fixed time of an evaluation, in states of a member.
+// The fixed time of an evaluation, in states of a member; that of each equation of a closed loop is as long.
 static const double states_of_a_call = 300;
+
+static double call_of(const bough_simulation *s) { return states_of_a_call * (1 + s->tree->n_rows); }
+
+// Evaluations for the tangents of closed loops, by central differences.
+static double evaluations_of_tangent(const bough_simulation *s) {
+    return s->tree->n_closures > 0 ? 2 * (s->tree->n_q + s->tree->n_v) : 0;
+}
 
 double bough_simulation_work(const bough_simulation *s) {
     const bough_assembly *a = s->master->assembly;
@@ -404,9 +411,22 @@ double bough_simulation_work(const bough_simulation *s) {
     for (int i = whole ? -1 : 0; i < a->n_member; i++) {
         bough_statistics own = bough_member_statistics(i < 0 ? whole : a->member[i]);
         double states = i < 0 ? a->n_state : a->member[i]->system.n_state;
-        work += (double)(own.derivatives + own.factorisations) * (states_of_a_call + states);
+        double call = i <= 0 ? call_of(s) : states_of_a_call; // the tree is member 0
+        work += (double)(own.derivatives + own.factorisations) * (call + states);
+        if (i <= 0) work += (double)own.jacobians * evaluations_of_tangent(s) * call;
     }
     return work;
+}
+
+double bough_other_run_work_of_step(const bough_other_run *other) {
+    enum { EVALUATIONS = 4 }; // of the Rosenbrock method
+    return EVALUATIONS * (call_of(other->simulation) + other->simulation->master->assembly->n_state);
+}
+
+void bough_other_run_limit(bough_other_run *other, int most_steps) {
+    const bough_integrator *x = &bough_scheme_whole(other->simulation->master->coupling)->integrator;
+    if (other->simulation->scene->simulation.master.solver == BOUGH_ROSENBROCK)
+        x->ops->limit(x->self, most_steps);
 }
 
 void bough_other_run_sample(bough_other_run *other) {

@@ -70,9 +70,15 @@ typedef struct bough_other_run {
 bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
                                    bough_other_run *other);
 
-// Evaluations and factorisations of all members so far, each weighted by the states of the member and a
-// constant. Nearly proportional to CPU time, and the same on every machine.
+// Evaluations and factorisations of all members so far, each weighted by the states of the member, the
+// equations of closed loops and a constant. Nearly proportional to CPU time, and the same on every machine.
 double bough_simulation_work(const bough_simulation *s);
+
+// The same for a step of the Rosenbrock method, without tangents.
+double bough_other_run_work_of_step(const bough_other_run *other);
+
+// Limits the steps of the Rosenbrock method in each macro step; one for which more are foreseen fails.
+void bough_other_run_limit(bough_other_run *other, int most_steps);
 
 void bough_other_run_sample(bough_other_run *other);
 

@@ -6,10 +6,13 @@
 
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
-// Its largest work, relative to that of run and companion, extrapolated to the end; and a few milliseconds
+// Its largest work, relative to that of run and companion, extrapolated to the end; and some milliseconds
 // more.
 static const double most_work = 0.1;
-static const double little = 3e6;
+static const double little = 1e6;
+
+// Steps in its first macro step that are never too much work.
+static const double least_steps = 250;
 
 // Least jump of a load or a prescribed motion, relative to its range, that may excite vibrations faster than
 // the steps.
@@ -68,15 +71,27 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
-static bool is_dear(const bough_finer *f, const bough_master *run, double work) {
-    return f->work * run->time > most_work * work * run->duration + little * run->time;
+// What its work may still be; all at time 0.
+static double work_left(const bough_finer *f, const bough_master *run, double work) {
+    double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
+    return most_work * whole + little - f->work;
+}
+
+// The steps that it may take in the next macro step: the first alone may need more work than all may.
+static double most_steps(const bough_finer *f, const bough_master *run, double work) {
+    const bough_simulation *own = f->other.simulation;
+    const bough_scene_solver *solver = &own->scene->simulation.master;
+    double most = solver->most_steps;
+    if (solver->solver != BOUGH_ROSENBROCK || own->master->time > f->from) return most;
+    double allowed = work_left(f, run, work) / bough_other_run_work_of_step(&f->other);
+    return floor(fmin(most, fmax(least_steps, allowed)));
 }
 
 // From a time at which both have new samples of the air, at most `reach` before the jump.
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    if (jump > m->time + reach || is_dear(f, m, work) || !bough_master_sampled(m)) return;
+    if (jump > m->time + reach || work_left(f, m, work) < 0 || !bough_master_sampled(m)) return;
     if (!f->follows) join(f, run), f->from = m->time, f->run_steps = steps_of(run);
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
@@ -86,25 +101,26 @@ void bough_finer_go_on(bough_finer *f, const bough_master *run) {
     f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
 }
 
-// Whether it has failed by too many steps, and the run passes over the same vibrations: it takes less than a
-// quarter of the steps, of which a hundredth of its tolerance needs a few times as many.
-static bool gave_up(const bough_finer *f, const bough_status *status, long steps, long by_run) {
-    int most = f->other.simulation->scene->simulation.master.most_steps;
-    return status->code == BOUGH_FAILED && steps >= most / 5 && 4 * by_run < most;
+// Whether it has failed by more than the most steps, and the run passes over the same vibrations: it takes
+// less than a quarter of the steps, of which a hundredth of its tolerance needs a few times as many.
+static bool gave_up(const bough_status *status, double most, long steps, long by_run) {
+    return status->code == BOUGH_FAILED && steps >= floor(most / 5) && 4 * by_run < most;
 }
 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     bough_status status = bough_ok();
-    bool ends = run->master->time > f->until || is_dear(f, run->master, work);
+    bool ends = run->master->time > f->until || work_left(f, run->master, work) < 0;
     if (!f->follows || ends) return f->follows = false;
     long before = steps_of(own), by_run = steps_of(run) - f->run_steps;
+    double most = most_steps(f, run->master, work);
+    bough_other_run_limit(&f->other, (int)most);
     f->run_steps += by_run;
     f->work -= bough_simulation_work(own);
     while (bough_is_ok(&status) && own->master->time < run->master->time)
         status = bough_other_run_step(&f->other, run);
     f->work += bough_simulation_work(own);
-    if (gave_up(f, &status, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
+    if (gave_up(&status, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
     f->follows = bough_is_ok(&status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;
