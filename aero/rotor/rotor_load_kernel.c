@@ -44,41 +44,38 @@ static bough_stall_inflow stall_inflow(const blade_rows *r, int j) {
     return (bough_stall_inflow){r->speed[j], r->alpha[j], r->pitch_rate[j]};
 }
 
-// Lift, drag and moment coefficients: of the static polars, or with dynamic stall.
-static void evaluate_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
+static void put_slopes(const blade_rows *r, int j, bough_stall_slopes k) {
+    r->static_slope[j] = k.fixed;
+    r->lift_slope[j] = k.angle.lift;
+    r->drag_slope[j] = k.angle.drag;
+    r->moment_slope[j] = k.angle.moment;
+    r->lift_rate[j] = k.rate.lift;
+    r->drag_rate[j] = k.rate.drag;
+    r->moment_rate[j] = k.rate.moment;
+}
+
+// Lift, drag and moment coefficients: of the static polars, or with dynamic stall; and their derivatives by
+// the angle of attack and by the section's rotation.
+static void evaluate_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data,
+                            bool slopes) {
     const blade_rows *r = data->scratch->blade + blade;
     for (int j = 0; j < rotor->n_station; j++) {
+        const bough_polar *polar = rotor->station.polar[j];
         bough_coefficients k;
+        bough_stall_slopes by = {.fixed = 0};
         if (data->memory.stall) {
-            k = bough_stall_advance(rotor->station.polar[j], rotor->station.chord[j], stall_inflow(r, j),
+            k = bough_stall_advance(polar, rotor->station.chord[j], stall_inflow(r, j),
                                     time - data->memory.clock->time,
-                                    data->memory.stall + blade * rotor->n_station + j);
+                                    data->memory.stall + blade * rotor->n_station + j, slopes ? &by : NULL);
         } else {
-            k = bough_polar_at(rotor->station.polar[j], r->alpha[j]);
+            k = bough_polar_at(polar, r->alpha[j]);
+            if (slopes) by.angle = bough_polar_slope(polar, r->alpha[j]);
+            by.fixed = by.angle.lift;
         }
         r->lift[j] = k.lift;
         r->drag[j] = k.drag;
         r->moment[j] = k.moment;
-    }
-}
-
-// Derivatives of the coefficients by the angle of attack and by the section's rotation.
-static void evaluate_slopes(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
-    const blade_rows *r = data->scratch->blade + blade;
-    for (int j = 0; j < rotor->n_station; j++) {
-        bough_stall_slopes k = {.angle = bough_polar_slope(rotor->station.polar[j], r->alpha[j])};
-        r->static_slope[j] = k.angle.lift;
-        if (data->memory.stall) {
-            k = bough_stall_slopes_of(rotor->station.polar[j], rotor->station.chord[j], stall_inflow(r, j),
-                                      time - data->memory.clock->time,
-                                      data->memory.stall + blade * rotor->n_station + j);
-        }
-        r->lift_slope[j] = k.angle.lift;
-        r->drag_slope[j] = k.angle.drag;
-        r->moment_slope[j] = k.angle.moment;
-        r->lift_rate[j] = k.rate.lift;
-        r->drag_rate[j] = k.rate.drag;
-        r->moment_rate[j] = k.rate.moment;
+        if (slopes) put_slopes(r, j, by);
     }
 }
 
@@ -263,15 +260,15 @@ void BOUGH_AT_LEVEL(bough_rotor_load)(const bough_rotor *rotor, const bough_roto
                                       bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     induce(rotor, motion, blade, data->scratch);
-    evaluate_polars(rotor, motion->time, blade, data);
+    bool slopes = rotor->slopes && !data->skips_slopes;
+    evaluate_polars(rotor, motion->time, blade, data, slopes);
     load_stations(rotor, r);
     int n = rotor->n_vertex;
     spread(n, rotor->row, LOAD, 6, r->load, data->load + 6 * blade * n);
     double *line = data->line + 12 * blade * (n - 1);
     spread(n - 1, rotor->mean, LOAD, 6, r->load, line);
     spread(n - 1, rotor->slope, LOAD, 6, r->load, line + 6 * (n - 1));
-    if (rotor->slopes && !data->skips_slopes) {
-        evaluate_slopes(rotor, motion->time, blade, data);
+    if (slopes) {
         slope_stations(rotor, r, data);
         spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope, data->slope + BOUGH_SLOPES * blade * n);
     }

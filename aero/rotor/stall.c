@@ -150,28 +150,6 @@ static double downwash_of(double chord, bough_stall_inflow inflow) {
     return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
 }
 
-bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
-                                       double step, bough_stall_state *state) {
-    double alpha = lane_remainder(inflow.alpha), speed = inflow.speed;
-    bough_coefficients fixed = bough_polar_at(polar, alpha);
-    if (polar->slope == 0 || !(speed > slow)) {
-        state->started = 0;
-        return fixed;
-    }
-    double downwash = downwash_of(chord, inflow), late = alpha + downwash;
-    if (state->started == 0) {
-        start(polar, late, speed, state);
-    } else if (step > 0) {
-        double semi_chords = step * (state->speed + speed) / chord;
-        advance(polar, semi_chords, late, speed, BOUGH_PI * downwash / polar->slope, state);
-    }
-    double weight = dynamic_weight(alpha);
-    if (weight == 0) return fixed;
-    static_part p = static_at(polar, effective(polar, state));
-    bough_coefficients k = dynamic(polar, p, state->separation, late, downwash);
-    return mixture(fixed, k, weight);
-}
-
 // -- slopes ---------------------------------------------------------------------------------------
 
 // ∂α_E/∂α within an advance.
@@ -190,29 +168,61 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
                                 (a.moment - b.moment) / step};
 }
 
-bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
-                                         double step, const bough_stall_state *state) {
+// The coefficients after an advance, and what they are made of.
+typedef struct advanced {
+    double alpha, late, downwash, weight;
+    bough_coefficients fixed, k; // of the static polar, and dynamic ones
+    double angle;                // α_E
+    double prompt;               // ∂α_E/∂α
+} advanced;
+
+// By differences of the dynamic coefficients; `slopes` has those of the static polar.
+static void find_slopes(const bough_polar *polar, const advanced *a, double chord, bough_stall_inflow inflow,
+                        double x, bough_stall_slopes *slopes) {
     const double d = 1e-4; // [rad]
-    double alpha = lane_remainder(inflow.alpha), weight = dynamic_weight(alpha);
-    bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
-    if (state->started == 0 || weight == 0) return slopes;
-    double downwash = downwash_of(chord, inflow), late = alpha + downwash, x = state->separation;
-    double angle = effective(polar, state), prompt = prompt_fraction(polar, 2 * step * inflow.speed / chord);
-    static_part moved = static_at(polar, angle + prompt * d);
-    bough_coefficients k = dynamic(polar, static_at(polar, angle), x, late, downwash);
-    bough_coefficients more = dynamic(polar, moved, x, late + d, downwash);
-    bough_coefficients rotated = dynamic(polar, moved, x, late + d, downwash + d);
-    slopes.angle = mixture(slopes.angle, quotient(more, k, d), weight);
-    if (weight < 1) { // the weight depends on the angle, too
-        bough_coefficients fixed = bough_polar_at(polar, alpha);
-        double fading_rate = -copysign(1 / (faded - fading), alpha);
-        bough_coefficients by_weight = quotient(k, fixed, 1 / fading_rate);
-        slopes.angle.lift += by_weight.lift;
-        slopes.angle.drag += by_weight.drag;
-        slopes.angle.moment += by_weight.moment;
+    static_part moved = static_at(polar, a->angle + a->prompt * d);
+    bough_coefficients more = dynamic(polar, moved, x, a->late + d, a->downwash);
+    bough_coefficients rotated = dynamic(polar, moved, x, a->late + d, a->downwash + d);
+    slopes->angle = mixture(slopes->angle, quotient(more, a->k, d), a->weight);
+    if (a->weight < 1) { // the weight depends on the angle, too
+        double fading_rate = -copysign(1 / (faded - fading), a->alpha);
+        bough_coefficients by_weight = quotient(a->k, a->fixed, 1 / fading_rate);
+        slopes->angle.lift += by_weight.lift;
+        slopes->angle.drag += by_weight.drag;
+        slopes->angle.moment += by_weight.moment;
     }
-    bool limited = fabs(downwash) >= 0.5;
-    double quarter = limited ? 0 : weight * chord / (2 * inflow.speed);
-    slopes.rate = mixture((bough_coefficients){0}, quotient(rotated, k, d), quarter);
-    return slopes;
+    bool limited = fabs(a->downwash) >= 0.5;
+    double quarter = limited ? 0 : a->weight * chord / (2 * inflow.speed);
+    slopes->rate = mixture((bough_coefficients){0}, quotient(rotated, a->k, d), quarter);
+}
+
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                       double step, bough_stall_state *state, bough_stall_slopes *slopes) {
+    double alpha = lane_remainder(inflow.alpha), speed = inflow.speed;
+    advanced a = {.alpha = alpha, .fixed = bough_polar_at(polar, alpha), .weight = dynamic_weight(alpha)};
+    if (slopes) {
+        *slopes = (bough_stall_slopes){.angle = bough_polar_slope(polar, alpha)};
+        slopes->fixed = slopes->angle.lift;
+    }
+    if (polar->slope == 0 || !(speed > slow)) {
+        state->started = 0;
+        return a.fixed;
+    }
+    a.downwash = downwash_of(chord, inflow);
+    a.late = alpha + a.downwash;
+    if (state->started == 0) {
+        start(polar, a.late, speed, state);
+    } else if (step > 0) {
+        double semi_chords = step * (state->speed + speed) / chord;
+        advance(polar, semi_chords, a.late, speed, BOUGH_PI * a.downwash / polar->slope, state);
+    }
+    if (a.weight == 0) return a.fixed;
+    // theory (91)
+    a.angle = effective(polar, state);
+    a.k = dynamic(polar, static_at(polar, a.angle), state->separation, a.late, a.downwash);
+    if (slopes) {
+        a.prompt = prompt_fraction(polar, 2 * step * speed / chord);
+        find_slopes(polar, &a, chord, inflow, state->separation, slopes);
+    }
+    return mixture(a.fixed, a.k, a.weight);
 }

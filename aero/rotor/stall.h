@@ -37,19 +37,17 @@ typedef struct bough_stall_state {
     double separation_sought, separation; // f of the lagged angle: input and state [-]
 } bough_stall_state;
 
-// Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
-// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static
-// polar. `chord` [m].
-bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
-                                       double step, bough_stall_state *state);
-
-// Derivatives of the coefficients of the last advance by `step` by its angle of attack [1/rad] and its
-// rotation [s/rad], with the separation constant: it follows later.
+// Derivatives of the coefficients by the angle of attack [1/rad] and by the section's rotation [s/rad] after
+// an advance, with the separation constant: it follows later.
 typedef struct bough_stall_slopes {
     bough_coefficients angle, rate;
+    double fixed; // of the static lift by the angle
 } bough_stall_slopes;
 
-bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
-                                         double step, const bough_stall_state *state);
+// Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
+// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static
+// polar. `chord` [m]; `slopes` may be NULL.
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                       double step, bough_stall_state *state, bough_stall_slopes *slopes);
 
 #endif

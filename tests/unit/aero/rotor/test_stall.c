@@ -54,11 +54,12 @@ TEST(steady_limit_is_the_static_polar) {
         for (double angle = -178; angle < 180; angle += 7.3) {
             bough_stall_state s = {0};
             bough_coefficients k =
-                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s);
+                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s, NULL);
             check_static(&a->polar[p], angle * degree, k); // started in equilibrium
-            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3}, 0.02, &s);
+            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3}, 0.02, &s,
+                                NULL);
             for (int i = 0; i < 4; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3, &s);
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3, &s, NULL);
             check_static(&a->polar[p], angle * degree, k);
         }
     }
@@ -84,9 +85,10 @@ TEST(a_run_settles_on_the_static_polar) {
         for (double angle = -10; angle <= 15; angle += 0.25) {
             bough_stall_state s = {0};
             bough_coefficients k =
-                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s);
+                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s, NULL);
             for (int i = 0; i < STEPS; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02, &s);
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02, &s,
+                                        NULL);
             bough_coefficients fixed = bough_polar_at(polar + p, angle * degree);
             worst = fmax(worst, fmax(fabs(k.lift - fixed.lift), fabs(k.drag - fixed.drag)));
             worst = fmax(worst, fabs(k.moment - fixed.moment));
@@ -114,7 +116,7 @@ TEST(attached_lift_is_indicial) {
         for (int i = 0; i <= PER_CYCLE * CYCLES; i++) {
             double phase = 2 * BOUGH_PI * (i % PER_CYCLE) / PER_CYCLE;
             bough_stall_inflow inflow = {speed, 4 * degree + amplitude * sin(phase), 0};
-            double lift = bough_stall_advance(&foil, chord, inflow, step, &s).lift;
+            double lift = bough_stall_advance(&foil, chord, inflow, step, &s, NULL).lift;
             if (i > PER_CYCLE * (CYCLES - 1)) got += lift * cexp(-i1 * phase) * 2 / PER_CYCLE;
         }
         double complex expected = -i1 * foil.slope * amplitude * c; // of a sine
@@ -131,7 +133,7 @@ TEST(rotation_lifts) {
     bough_stall_state s = {0};
     bough_coefficients k = {0};
     for (int i = 0; i < 3; i++)
-        k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0.4}, 100, &s);
+        k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0.4}, 100, &s, NULL);
     double x = 2 * 0.4 / 80;
     check_near(k.lift, foil.slope * (3 * degree + x) + BOUGH_PI * x, 1e-9, 0);
     check_near(k.drag, foil.slope * (3 * degree + x) * x, 1e-9, 0);
@@ -144,9 +146,10 @@ TEST(withheld_lift_leans_back) {
     airfoils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
-    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
-    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s);
-    bough_coefficients k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s);
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s, NULL);
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s, NULL);
+    bough_coefficients k =
+        bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s, NULL);
     check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
     check_near(k.drag, degree * k.lift, 1e-4, 0);
 }
@@ -160,12 +163,12 @@ TEST(indicial_lift_is_the_polars) {
     bough_polar foil;
     bough_polar_build(a->arena, &def, &foil);
     bough_stall_state s = {0};
-    bough_stall_advance(&foil, chord, (bough_stall_inflow){speed, 4 * degree, 0}, 0, &s);
+    bough_stall_advance(&foil, chord, (bough_stall_inflow){speed, 4 * degree, 0}, 0, &s, NULL);
     double before = bough_polar_at(&foil, 4 * degree).lift;
     bough_stall_inflow after = {speed, 4 * degree + step, 0};
-    bough_stall_advance(&foil, chord, after, 1e-9, &s);
+    bough_stall_advance(&foil, chord, after, 1e-9, &s, NULL);
     for (int i = 1; i <= 10; i++) {
-        double lift = bough_stall_advance(&foil, chord, after, 0.5 * chord / speed, &s).lift;
+        double lift = bough_stall_advance(&foil, chord, after, 0.5 * chord / speed, &s, NULL).lift;
         double expected = 1 - k[0] * exp(-k[2] * i) - k[1] * exp(-k[3] * i);
         check_near((lift - before) / (foil.slope * step), expected, 0, 1e-6);
     }
@@ -187,7 +190,8 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
     for (int i = 0; i <= cycles * per_cycle; i++) {
         double phase = 2 * BOUGH_PI * (i % per_cycle) / per_cycle;
         double alpha = mean + amplitude * sin(phase);
-        double lift = bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s).lift;
+        double lift =
+            bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s, NULL).lift;
         int last = i - (cycles - 1) * per_cycle;
         if (last == 0) first = l.up = lift;
         if (last > 0) l.area += (lift + before) / 2 * (alpha - angle);
@@ -231,18 +235,19 @@ TEST(slopes_are_those_of_an_advance) {
             double alpha = angle[i] * degree;
             bough_stall_state before = {0};
             bough_stall_inflow inflow = {50, alpha - 3 * degree, 0};
-            bough_stall_advance(&foil, chord, inflow, 0, &before);
+            bough_stall_advance(&foil, chord, inflow, 0, &before, NULL);
             bough_coefficients change[2][2];
             for (int k = 0; k < 4; k++) {
                 double by = k % 2 == 0 ? -d / 2 : d / 2;
                 bough_stall_state s = before;
                 inflow = (bough_stall_inflow){50, alpha + (k < 2 ? by : 0), turning + (k < 2 ? 0 : 20 * by)};
-                change[k / 2][k % 2] = bough_stall_advance(&foil, chord, inflow, step, &s);
+                change[k / 2][k % 2] = bough_stall_advance(&foil, chord, inflow, step, &s, NULL);
             }
             bough_stall_state s = before;
             inflow = (bough_stall_inflow){50, alpha, turning};
-            bough_stall_advance(&foil, chord, inflow, step, &s);
-            bough_stall_slopes k = bough_stall_slopes_of(&foil, chord, inflow, step, &s);
+            bough_stall_slopes k;
+            bough_stall_advance(&foil, chord, inflow, step, &s, &k);
+            check_near(k.fixed, bough_polar_slope(&foil, alpha).lift, 0, 0);
             const bough_coefficients slope[2] = {k.angle, k.rate};
             for (int j = 0; j < 2; j++) {
                 double by = j == 0 ? d : 20 * d, whole = j == 0 ? 1 : chord / 100;
@@ -268,7 +273,7 @@ TEST(odd_flow_is_finite) {
             bough_stall_inflow inflow = {i % 9 ? 90 * r[0] : 0, 20 * (r[1] - 0.5),
                                          1e3 * (r[2] - 0.5) * (i % 5 == 0)};
             double step = i % 7 ? 0.02 * r[3] : (i % 14 ? 0 : 1e6);
-            bough_coefficients k = bough_stall_advance(&foil, 3, inflow, step, &s);
+            bough_coefficients k = bough_stall_advance(&foil, 3, inflow, step, &s, NULL);
             assert_true(fabs(k.lift) < 1e2 && fabs(k.drag) < 1e3 && fabs(k.moment) < 1e2);
         }
     }
