@@ -217,8 +217,16 @@ static bough_mat3 cross_times(bough_vec3 p, bough_mat3 a) {
     return (bough_mat3){bough_cross(p, a.c1), bough_cross(p, a.c2), bough_cross(p, a.c3)};
 }
 
+// A positive semidefinite matrix is zero where its diagonal is, as of a pitch joint that carries a rod only.
+static bool is_zero(const double *a) {
+    double trace = 0;
+    for (int k = 0; k < N; k++) trace += a[(N + 1) * k];
+    return trace == 0;
+}
+
 // up += Xᵀ a X of a symmetric a: its blocks rotated, then shifted by p.
 static void add_to_parent(const bough_transform *x, const double *a, double *up) {
+    if (is_zero(a)) return;
     bough_mat3 mass = rotated(x->rotation, block_of(a, 0, 0));
     bough_mat3 coupling = rotated(x->rotation, block_of(a, 0, 3));
     bough_mat3 inertia = rotated(x->rotation, block_of(a, 3, 3)), back = bough_mat3_transpose(coupling);
