@@ -92,7 +92,7 @@ typedef struct bough_station {
     double radius;                   // from the shaft axis [m]
     double inflow_x, inflow_y;       // relative to the station, without induction [m/s]
     double axial, tangential;        // a, a' after the skew correction [-]
-    double alpha;                    // angle of attack in the section's plane [rad]
+    double alpha;                    // angle of attack in the section's plane, from −π to π [rad]
     double phi, twist;               // inflow angle, chord to the y axis [rad]
     double speed;                    // relative, with induction [m/s]
     bough_coefficients coefficients; // Cl, Cd, Cm

@@ -35,7 +35,7 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
         r.tangential[j] = tangential;
         r.phi[j] = lane_angle(u, v);
         double seen = lane_angle(u + r.skew_normal[j] * v, (1 - r.skew_chord[j]) * v);
-        r.alpha[j] = seen - r.twist[j];
+        r.alpha[j] = lane_remainder(seen - r.twist[j]);
         r.speed[j] = sqrt(u * u + v * v);
     }
 }
@@ -88,7 +88,7 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
 #pragma omp simd
     for (int j = 0; j < s; j++) {
         double q = 0.5 * density * r.speed[j] * r.speed[j] * chord[j];
-        sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
+        sine_cosine k = lane_sine_cosine(r.alpha[j]);
         double normal = q * (r.lift[j] * k.cosine + r.drag[j] * k.sine);
         double chordwise = q * (r.drag[j] * k.cosine - r.lift[j] * k.sine);
         bough_vec3 force =
@@ -175,7 +175,7 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, con
 #pragma omp simd
     for (int j = 0; j < s; j++) {
         double q = 0.5 * density * r.speed[j] * chord[j], nose = pitching * chord[j];
-        sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
+        sine_cosine k = lane_sine_cosine(r.alpha[j]);
         // coefficients along normal and chord, and their slopes by the angle of attack
         plane f = {r.lift[j] * k.cosine + r.drag[j] * k.sine, r.drag[j] * k.cosine - r.lift[j] * k.sine,
                    nose * r.moment[j]};

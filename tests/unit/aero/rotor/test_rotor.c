@@ -398,6 +398,8 @@ TEST(odd_states_are_finite) {
             assert_true(isfinite(bough_norm(r->force[k])));
             assert_true(isfinite(bough_norm(r->moment[k])));
         }
+        for (int j = 0; j < STATIONS; j++)
+            assert_true(fabs(bough_rotor_station(&r->data, 0, j).alpha) < BOUGH_PI + 1e-9);
     }
 }
 
