@@ -106,7 +106,8 @@ static bool has_short_pulses(const bough_scene *scene) {
     return found;
 }
 
-static int other_segments(const bough_scene *scene, int body) {
+// For the rod's own sake.
+static int own_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment;
     if (has_short_pulses(scene)) return finer_number(n);
     bool blade = bough_scene_blade(scene, body) >= 0;
@@ -115,20 +116,28 @@ static int other_segments(const bough_scene *scene, int body) {
     return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
-static bool gets_finer(const bough_scene *scene, int body) {
-    return bough_scene_has_mesh(&scene->body[body]) &&
-           other_segments(scene, body) > scene->body[body].rod.n_segment;
+// Most segments of a rod that gets more of them; 0: none does.
+static int most_refined(const bough_scene *scene) {
+    int most = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        int n = scene->body[i].rod.n_segment;
+        if (bough_scene_has_mesh(&scene->body[i]) && n > most && own_segments(scene, i) > n) most = n;
+    }
+    return most;
 }
 
-static bool some_finer(const bough_scene *scene) {
-    bool finer = false;
-    for (int i = 0; i < scene->n_body; i++) finer = finer || gets_finer(scene, i);
-    return finer;
-}
+static bool some_finer(const bough_scene *scene) { return most_refined(scene) > 0; }
+
+// Fewer segments of one rod hide in the difference what more of another one show, where their errors may be
+// of one size: with up to BESIDE times as many as a refined rod has it is refined too.
+enum { BESIDE = 3 };
 
 static void change_segments(const bough_scene *scene, bough_scene *to) {
+    int most = BESIDE * most_refined(scene);
     for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].rod.node) to->body[i].rod.n_segment = other_segments(scene, i);
+        if (!scene->body[i].rod.node) continue;
+        int n = scene->body[i].rod.n_segment;
+        to->body[i].rod.n_segment = n <= most ? finer_number(n) : own_segments(scene, i);
     }
 }
 

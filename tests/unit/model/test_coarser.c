@@ -20,6 +20,25 @@ static coarser coarser_of(bough_arena *arena, const char *path, const char *firs
     return (coarser){scene, bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL)};
 }
 
+// The errors of a rod of 5 segments can hide those of one of 15.
+TEST(beside_a_finer_rod_few_segments_get_more) {
+    static const int cases[][4] = {{5, 15, 10, 30}, {5, 16, 10, 8}, {9, 15, 5, 8}};
+    for (int k = 0; k < 3; k++) {
+        check_arena(arena);
+        char text[900];
+        snprintf(text, sizeof text,
+                 "simulation: {duration: 1 s, macro_step: 10 ms}\nbodies:\n"
+                 "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {length: 1,\n"
+                 "     segments: %d, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"
+                 "  - {name: b, fidelity: rod, joint: {kind: fixed, parent: a}, rod: {length: 1,\n"
+                 "     segments: %d, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n",
+                 cases[k][0], cases[k][1]);
+        const bough_scene *scene = scene_build_text(arena, text)->scene;
+        const bough_scene *other = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+        for (int i = 0; i < 2; i++) assert_int_equal(other->body[i].rod.n_segment, cases[k][2 + i]);
+    }
+}
+
 // What is equal has been discretised before.
 TEST(another_run_takes_the_meshes_that_are_equal) {
     check_arena(arena);

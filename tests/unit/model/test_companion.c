@@ -404,7 +404,7 @@ TEST(a_mesh_far_beyond_the_bound_is_proved_early) {
 
 #define COARSE_BLADES                                                                                        \
     "simulation.duration=6 s", "simulation.output.interval=0.02", "simulation.output.from=0",                \
-        "bodies[3-5].rod.segments=12", "bodies[tower].rod.segments=6",                                       \
+        "bodies[3-5].rod.segments=12", "bodies[tower].rod.segments=3",                                       \
         "aero.wind={kind: iec, condition: ews, speed: 20, start: 0.5, shear: horizontal, reference_height: 90}"
 
 // Six segments of a blade under air at 25 Hz vibrate in torsion, twelve at 50 Hz do not. Finer samples show
@@ -481,7 +481,7 @@ TEST(samples_of_the_start_have_an_error) {
 
 #define SLOW_PITCH                                                                                           \
     "simulation.duration=16 s", "simulation.output.interval=0.02", "simulation.output.from=0",               \
-        "bodies[tower].rod.segments=8",                                                                      \
+        "bodies[tower].rod.segments=10",                                                                     \
         "aero.wind={kind: uniform, table: {times: [0, 5, 6, 10], speeds: [11, 11, 20, 20]}}",                \
         "control={kind: variable-speed, rate: 25 Hz, gear_ratio: 97, law: {pitch_rate: 1 deg/s},"            \
         " events: [{kind: emergency-stop, channel: GenSpeed, above: 1300}]}"
