@@ -201,6 +201,8 @@ modes() {
     rm -r flutter
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'
+    refused 'rod tower carries the body nacelle.*: take modes.of: scene' modes "$folder/apps/turbine/land.yaml" \
+        --set modes.of=rods
     refused "modes.speed: only used with 'of: rods'" modes "$turbine" \
         --set 'modes={of: scene, speed: 12.1 rpm}'
     refused "modes.axis: only used without 'about'" modes "$turbine" \

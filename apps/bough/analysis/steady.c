@@ -51,8 +51,8 @@ static bough_status check_carries_none(const bough_simulation *s, const bough_be
     int carried = bough_scene_carried_by(s->scene, (int)(beam->body - s->scene->body));
     if (carried < 0) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "rod %s carries the body %s; there is no equilibrium in "
-                      "steady rotation for rods that carry bodies",
+                      "rod %s carries the body %s, whose forces a single rod does not have: take "
+                      "modes.of: scene",
                       beam->body->name, s->scene->body[carried].name);
 }
 
