@@ -44,6 +44,8 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
+    d->factored = false;
+    if (d->loops) d->loops->found = false;
     joint_springs(tree, q, v, d);
     for (int k = 0; k < bough_tree_n_elements(tree); k++) {
         double energy;
@@ -324,7 +326,7 @@ static bough_wrench pass_down(const bough_link *link, bough_tree_data *d, int i,
         return bough_wrench_add(d->wrench[i], matrix_mul(own, turn));
     }
     double *u = joint_remainder(link, d, i);
-    release_joint(link, gain, factor, own);
+    if (!d->factored) release_joint(link, gain, factor, own);
     return bough_wrench_add(d->wrench[i],
                             bough_wrench_add(matrix_mul(own, turn), gain_solve(link, gain, factor, u)));
 }
@@ -338,20 +340,20 @@ static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twis
     d->drive[link->first_speed] = needed[0] - d->force[link->first_speed];
 }
 
-// Articulated bodies, theory (41).
+// Articulated bodies, theory (41). Their inertias depend on the coordinates alone.
 bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
                               double *acceleration) {
     bias_wrenches(tree, d, t, input);
     joint_loads(tree, d, t);
     d->singular = -1;
-    for (int i = 0; i < tree->n_links; i++) {
+    for (int i = 0; i < tree->n_links && !d->factored; i++) {
         memcpy(d->articulated + NN * i, tree->links[i].matrix, sizeof tree->links[i].matrix);
     }
     // inwards: articulated inertia and bias wrench of each parent
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
         double *own = d->articulated + NN * i;
-        if (link->motion == NULL &&
+        if (link->motion == NULL && !d->factored &&
             !factor_joint(link, own, d->joint_gain + NN * i, d->joint_factor + NN * i)) {
             d->singular = i;
             return false;
@@ -361,10 +363,12 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
             continue;
         }
         bough_wrench passed = pass_down(link, d, i, t);
-        if (link->n_speeds < N) add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
+        if (link->n_speeds < N && !d->factored)
+            add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
     }
+    d->factored = true;
     // outwards: accelerations
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];

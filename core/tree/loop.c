@@ -198,8 +198,10 @@ static bool factor(const bough_tree *tree, bough_loops *l) {
 
 // After kinematics, bough_loops_rows and free dynamics at this state.
 static bool find_mobility(const bough_tree *tree, bough_tree_data *d) {
-    for (int k = 0; k < tree->n_rows; k++) respond(tree, d, k);
-    return factor(tree, d->loops);
+    bough_loops *l = d->loops;
+    for (int k = 0; k < tree->n_rows && !l->found; k++) respond(tree, d, k);
+    l->found = l->found || factor(tree, l);
+    return l->found;
 }
 
 // The least x with G M⁻¹Gᵀ x equal to the given x in the least-squares sense, in place
@@ -284,6 +286,7 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *d, int *closu
     int m = tree->n_rows, smallest = m - tree->closure_rank, row = 0;
     double largest[2];
     if (tree->closure_rank == 0) return 1;
+    l->found = false;
     for (int k = 0; k < m; k++) respond(tree, d, k);
     find_largest(tree, l, largest);
     for (int j = 0; j < m; j++) {

@@ -244,6 +244,7 @@ typedef struct bough_loops {
     double *correction;        // M⁻¹Gᵀ μ (n_v)
     double *speed;             // (n_v) scratch
     int rank;                  // how many equations are independent
+    bool found;                // response, matrix, value and scale are of the data's coordinates
 } bough_loops;
 
 typedef struct bough_tree_data {
@@ -263,6 +264,7 @@ typedef struct bough_tree_data {
     double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)
     double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
+    bool factored;             // these three are of the data's coordinates
     double *force;             // generalised forces (n_v)
     double *drive;             // forces that drive prescribed joints, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1

@@ -48,12 +48,18 @@ static const double *place(tree_system *s, double t, const double *state) {
     return s->placed;
 }
 
-// The kinematics at a state. f is often asked for where h has just been.
+// The kinematics at a state. f is often asked for where h has just been, or where speeds alone differ: then
+// inertias and mobility remain.
 static void move_to(tree_system *s, const double *state) {
-    size_t bytes = (size_t)s->n * sizeof(double);
-    if (s->moved && memcmp(s->at, state, bytes) == 0) return;
-    bough_tree_kinematics(s->tree, state, s->data);
-    memcpy(s->at, state, bytes);
+    bough_tree_data *d = s->data;
+    size_t n_q = (size_t)s->tree->n_q, n_v = (size_t)s->tree->n_v;
+    bool remain = s->moved && memcmp(s->at, state, n_q * sizeof(double)) == 0;
+    if (remain && memcmp(s->at + n_q, state + n_q, n_v * sizeof(double)) == 0) return;
+    bool factored = d->factored, found = d->loops && d->loops->found;
+    bough_tree_kinematics(s->tree, state, d);
+    d->factored = remain && factored;
+    if (d->loops) d->loops->found = remain && found;
+    memcpy(s->at, state, (size_t)s->n * sizeof(double));
     s->moved = true;
 }
 
