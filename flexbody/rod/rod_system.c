@@ -110,22 +110,19 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
     }
 }
 
-// A segment's forces by the motion of its vertices, `position` being in lanes.
-static segment_force kept_force(const double *position, const double *velocity, vertex_variation l,
-                                vertex_variation r) {
+// A segment's forces by the motion of its vertices, from its kept tangents.
+static segment_force kept_force(const double *position, vertex_variation l, vertex_variation r) {
     // the directions of the tangents: differences of place and velocity, rotations of both vertices
-    double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
+    double q[DIRECTIONS], v[DIRECTIONS], force[FORCES] = {0};
+    const double *velocity = position + TANGENTS;
     lane_store(q + DELTA, 1, 0, bough_sub(r.x, l.x));
     lane_store(q + LEFT, 1, 0, l.phi);
     lane_store(q + RIGHT, 1, 0, r.phi);
     lane_store(v + DELTA, 1, 0, bough_sub(r.u, l.u));
     lane_store(v + LEFT, 1, 0, l.w);
     lane_store(v + RIGHT, 1, 0, r.w);
-    for (int f = 0; f < FORCES; f++, position += LANES * DIRECTIONS, velocity += DIRECTIONS) {
-        force[f] = 0;
-        for (int d = 0; d < DIRECTIONS; d++) {
-            force[f] += position[LANES * d] * q[d] + velocity[d] * v[d];
-        }
+    for (int d = 0; d < DIRECTIONS; d++, position += FORCES, velocity += FORCES) {
+        for (int f = 0; f < FORCES; f++) force[f] += position[f] * q[d] + velocity[f] * v[d];
     }
     return (segment_force){bough_v3_load(force + F), bough_v3_load(force + LL), bough_v3_load(force + LR)};
 }
@@ -135,17 +132,16 @@ static bool kept_tangent(void *self, const void *factors, const double *state_ra
                          double *wrench) {
     const bough_rod_model *m = ((const bough_rod_body *)self)->model;
     const bough_rod_tangent *k = factors;
-    int s = m->stride, lane = m->n % LANES;
+    int s = m->stride;
     variations v =
         variations_along(m, k->vertex + (size_t)KEPT_P * s + 1, s, k->end_rotation, state_rate, input_rate);
-    put_root(m, kept_force(k->variation, k->root, v.left[0], v.right[0]), wrench);
+    put_root(m, kept_force(k->root, v.left[0], v.right[0]), wrench);
     if (!bough_rod_carries(m)) return true;
-    // the last segment in its tile of eight, and the loads on the last vertex
-    const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
+    // the last segment, and the loads on the last vertex
     bough_vec3 phi = v.right[1].phi;
     segment_force load = {.f = bough_mat3_mul(lane_load_matrix(k->end_load, 1, 0), phi),
                           .lr = bough_mat3_mul(lane_load_matrix(k->end_load + 9, 1, 0), phi)};
-    put_end(load, kept_force(position, k->end, v.left[1], v.right[1]), wrench + BOUGH_ROD_OUTPUTS);
+    put_end(load, kept_force(k->end, v.left[1], v.right[1]), wrench + BOUGH_ROD_OUTPUTS);
     return true;
 }
 

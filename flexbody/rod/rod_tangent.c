@@ -20,7 +20,7 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->vertex = bough_rod_vertex_rows(arena, m, KEPT);
     k->work = bough_rod_vertex_rows(arena, m, WORK);
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
-    bough_arena_each(arena, TANGENTS, &k->root, &k->end);
+    bough_arena_each(arena, 2 * TANGENTS, &k->root, &k->end);
     k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_COLUMN);
     bough_block_tridiagonal_init(&k->matrix, arena, m->n);

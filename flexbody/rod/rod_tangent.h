@@ -28,8 +28,8 @@ typedef struct bough_rod_tangent {
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
-    double *root;           // of the first segment's forces by velocities, 9 f + d (81)
-    double *end;            // the same of the last segment of a rod that carries bodies (81)
+    double *root; // of the first segment's forces by configuration and velocities, 9 d + f (2 × 81)
+    double *end;  // the same of the last segment of a rod that carries bodies (2 × 81)
     double end_rotation[4]; // quaternion of such a rod's last vertex
     double end_load[18];    // change of the loads on it with its rotation: force and moment by columns
     bough_rod_blocks blocks;

@@ -363,11 +363,17 @@ static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, 
     }
 }
 
-// The velocities' tangents of a segment that is one of the eight.
-static void keep_velocity(const bough_rod_eight *eight, int segment, double *to) {
+// The tangents of a segment that is one of the eight, by columns: by configuration, then by velocities.
+static void keep_segment(const bough_rod_eight *eight, const double *position, int segment, double *to) {
     int lane = segment - eight->first;
     if (lane < 0 || lane >= LANES) return;
-    for (int i = 0; i < TANGENTS; i++) to[i] = eight->velocity[LANES * i + lane];
+    for (int d = 0; d < DIRECTIONS; d++) {
+        for (int f = 0; f < FORCES; f++, to++) {
+            int at = LANES * (DIRECTIONS * f + d) + lane;
+            to[0] = position[at];
+            to[TANGENTS] = eight->velocity[at];
+        }
+    }
 }
 
 // Segments first..first + 7 and the vertices at their right ends.
@@ -388,8 +394,8 @@ static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loa
     }
     if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
     // tangents of root and end wrench, then the blocks
-    keep_velocity(&eight, 0, k->root);
-    if (bough_rod_carries(m)) keep_velocity(&eight, m->n, k->end);
+    keep_segment(&eight, position, 0, k->root);
+    if (bough_rod_carries(m)) keep_segment(&eight, position, m->n, k->end);
     AT(form_blocks)(m, k, &eight);
 }
 
