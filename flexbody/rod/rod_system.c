@@ -19,7 +19,7 @@ struct bough_rod_body {
 };
 
 // p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
-static bough_vec3 rotation_of(const double *p, int p_stride, const double *r, int stride) {
+BOUGH_INLINE bough_vec3 rotation_of(const double *p, int p_stride, const double *r, int stride) {
     bough_quaternion q = lane_load_quaternion(p, p_stride, 0), dq = lane_load_quaternion(r, stride, 0);
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
     double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -29,13 +29,13 @@ static bough_vec3 rotation_of(const double *p, int p_stride, const double *r, in
 // -- variations of vertices -----------------------------------------------------------------------
 
 // Of the root, along a change of the BRF's velocity and angular velocity.
-static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
+BOUGH_INLINE vertex_variation root_variation(const bough_rod_model *m, const double *d) {
     return (vertex_variation){.u = bough_v3_load(d), .w = bough_mat3_tmul(m->root, bough_v3_load(d + 3))};
 }
 
 // Of the moving vertex i + 1, whose quaternion is p, along the variation d of the state.
-static vertex_variation state_variation(const bough_rod_model *m, const double *p, int stride,
-                                        const double *d, int i) {
+BOUGH_INLINE vertex_variation state_variation(const bough_rod_model *m, const double *p, int stride,
+                                              const double *d, int i) {
     int n = m->n;
     return (vertex_variation){.x = lane_load(d, n, i),
                               .phi = rotation_of(p, stride, d + 3 * n + i, n),
@@ -57,8 +57,9 @@ typedef struct variations {
 } variations;
 
 // p: the quaternions of the moving vertices; end: that of the last vertex. Either rate may be NULL for zero.
-static variations variations_along(const bough_rod_model *m, const double *p, int stride, const double *end,
-                                   const double *state_rate, const double *input_rate) {
+BOUGH_INLINE variations variations_along(const bough_rod_model *m, const double *p, int stride,
+                                         const double *end, const double *state_rate,
+                                         const double *input_rate) {
     variations v = {0};
     bool carries = bough_rod_carries(m);
     int last = m->n - 1;
@@ -111,7 +112,7 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 }
 
 // A segment's forces by the motion of its vertices, from its kept tangents.
-static segment_force kept_force(const double *position, vertex_variation l, vertex_variation r) {
+BOUGH_INLINE segment_force kept_force(const double *position, vertex_variation l, vertex_variation r) {
     // the directions of the tangents: differences of place and velocity, rotations of both vertices
     double q[DIRECTIONS], v[DIRECTIONS], force[FORCES] = {0};
     const double *velocity = position + TANGENTS;
