@@ -99,7 +99,7 @@ static void find_load_errors(case_run *r) {
     result->has_companion = c->coarser.simulation && !c->reason[0] && r->pair[0].channel[0].statistics.n > 0;
     for (int k = 0; k < 2; k++) bough_counts_finish(&r->pair[k]);
     for (int i = 0; i < r->study->n_channel && result->has_companion; i++)
-        result->load_error[i] = error_of(&r->pair[0].channel[i], &r->pair[1].channel[i], c->share);
+        result->load_error[i] = error_of(&r->pair[0].channel[i], &r->pair[1].channel[i], c->ratio);
 }
 
 // -- building -------------------------------------------------------------------------------------

@@ -430,7 +430,7 @@ typedef struct growth_at {
     double rate;      // of the fastest growing motion [1/s]; 0: rounding
     double frequency; // of that, damped [Hz]; 0: a divergence
     const char *name; // what moves in it
-    double share;     // with the other mesh: the error of the scene's mesh over the difference of the two
+    double ratio;     // with the other mesh: the error of the scene's mesh over the difference of the two
 } growth_at;
 
 // Growth at a place behind the point, with the scene's mesh or the other one.
@@ -454,7 +454,7 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     *to = (growth_at){.rate = -HUGE_VAL};
     if (bough_is_ok(&status) && other) {
         bough_scene *coarser = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
-        to->share = bough_coarser_share(scene, coarser);
+        to->ratio = bough_coarser_ratio(scene, coarser);
         scene = coarser;
     }
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &sim);
@@ -476,7 +476,7 @@ typedef struct boundary {
     double slope;     // of the growth over that part [1/s]
     double frequency; // as in growth_at, behind it
     const char *name;
-    double share;
+    double ratio;
 } boundary;
 
 // Between a stable point and the next one, where growths are low and high, by the Illinois rule; in halves
@@ -492,7 +492,7 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
         x = fmin(fmax(x, a + width / 4), b - width / 4);
         BOUGH_TRY(grow(arena, options, s, point, x, other, &at));
         to->slope = (at.rate - (at.rate > 0 ? low : high)) / (x - (at.rate > 0 ? a : b));
-        to->share = at.share;
+        to->ratio = at.ratio;
         if (at.rate > 0) {
             b = x, high = at.rate, low /= 2, to->frequency = at.frequency, to->name = at.name;
         } else {
@@ -510,10 +510,10 @@ static bough_status find_error(bough_arena *arena, const bough_options *options,
     growth_at other;
     boundary of_other = {0};
     BOUGH_TRY(grow(arena, options, s, point, at->part, true, &other));
-    *error = fabs(other.share * other.rate / at->slope);
+    *error = fabs(other.ratio * other.rate / at->slope);
     if (low < 0) return bough_ok();
     BOUGH_TRY(find_boundary(arena, options, s, point, low, high, true, &of_other));
-    *error = fabs(of_other.share * (of_other.part - at->part));
+    *error = fabs(of_other.ratio * (of_other.part - at->part));
     return bough_ok();
 }
 

@@ -26,8 +26,8 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
         const bough_scene_rod *rod = &scene->body[load->body].rod;
         if (!rod->node) continue;
         load->place = BOUGH_SCENE_AT_SPAN;
-        double share = bough_section_graded(rod->grading, (double)load->vertex / rod->n_segment);
-        load->span[0] = bough_scene_arc_length(&rod->structure) * share;
+        double part = bough_section_graded(rod->grading, (double)load->vertex / rod->n_segment);
+        load->span[0] = bough_scene_arc_length(&rod->structure) * part;
     }
 }
 
@@ -165,7 +165,7 @@ static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == B
 // constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
 // solution without one: all of it by a coupling that is explicit, repeats steps or is of order 1, as any is
 // across a jump within a macro step, or of fixed steps; half otherwise, where steps and mesh take part.
-static double usual_share(const bough_scene *scene) {
+static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
@@ -178,19 +178,19 @@ static double usual_share(const bough_scene *scene) {
 
 // At order 2 the error of n segments is 1/(r² − 1) of the difference to n/r segments; beside a finer mesh it
 // is the whole difference.
-double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
-    double share = usual_share(scene);
+double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other) {
+    double ratio = usual_ratio(scene);
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
-        if (r != 1) share = fmax(share, r < 1 ? 1 : 0.75 / (r * r - 1));
+        if (r != 1) ratio = fmax(ratio, r < 1 ? 1 : 0.75 / (r * r - 1));
     }
-    return share;
+    return ratio;
 }
 
-double bough_coarser_air_share(const bough_scene *scene, const bough_scene *other) {
+double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *other) {
     bool halved = holds_loads(scene) && other->aero.rate > scene->aero.rate;
-    return halved ? bough_finer_air_share(scene) : usual_share(scene);
+    return halved ? bough_finer_air_ratio(scene) : usual_ratio(scene);
 }
 
 // -- time -----------------------------------------------------------------------------------------
@@ -206,17 +206,17 @@ static const double loosest = 0.02; // tolerance
 // error beside an explicit coupling; a few times beside a finer mesh, whose companion would otherwise take as
 // long as the run. Otherwise it is a multiple, of which the run's error is a quarter.
 static looser looser_of(const bough_scene *scene) {
-    return some_finer(scene) ? (looser){6, 2} : usual_share(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
+    return some_finer(scene) ? (looser){6, 2} : usual_ratio(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
 }
 
-double bough_coarser_time_share(const bough_scene *scene) {
-    if (bough_coarser_is_loose(scene)) return bough_finer_time_share();
-    return fmax(usual_share(scene), looser_of(scene).step < 2 ? 0.6 : 0);
+double bough_coarser_time_ratio(const bough_scene *scene) {
+    if (bough_coarser_is_loose(scene)) return bough_finer_time_ratio();
+    return fmax(usual_ratio(scene), looser_of(scene).step < 2 ? 0.6 : 0);
 }
 
-double bough_finer_time_share(void) { return 4 / 3.0; } // half the steps, at order 2
+double bough_finer_time_ratio(void) { return 4 / 3.0; } // half the steps, at order 2
 
-double bough_finer_air_share(const bough_scene *scene) { return holds_loads(scene) ? 2 : 4 / 3.0; } // order 1
+double bough_finer_air_ratio(const bough_scene *scene) { return holds_loads(scene) ? 2 : 4 / 3.0; } // order 1
 
 static bool samples_fit(double rate, double macro_step) {
     return bough_master_multiple(1 / rate, macro_step) > 0;

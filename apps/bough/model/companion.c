@@ -36,8 +36,8 @@ static void give_up(bough_companion *c, const char *reason) {
     c->from = c->run->master->time;
 }
 
-// The oldest sample that the run shows, before it takes the next one, over the time between two.
-static double share_held(const bough_scene *scene) {
+// Greatest age of a sample that the run shows at a synchronisation point, over the time between two samples.
+static double ratio_held(const bough_scene *scene) {
     double rate = scene->aero.node ? scene->aero.rate : scene->control.node ? scene->control.rate : 0;
     return fmax(1 - rate * scene->simulation.macro_step, 0);
 }
@@ -54,9 +54,9 @@ static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
     BOUGH_TRY(bough_finer_build(arena, c->run, &c->finer));
     const bough_scene *scene = c->run->scene, *other = c->coarser.simulation->scene;
-    c->share = fmax(bough_coarser_share(scene, other), bough_coarser_air_share(scene, other));
-    if (bough_coarser_is_loose(scene)) c->share = fmax(c->share, bough_finer_time_share());
-    c->share_held = share_held(scene);
+    c->ratio = fmax(bough_coarser_ratio(scene, other), bough_coarser_air_ratio(scene, other));
+    if (bough_coarser_is_loose(scene)) c->ratio = fmax(c->ratio, bough_finer_time_ratio());
+    c->ratio_held = ratio_held(scene);
     take_record(c, arena);
     expect_jumps(c);
     return bough_ok();
@@ -117,7 +117,7 @@ static double difference(const bough_channel *channel, double a, double b) {
 }
 
 // A force answers accelerations, whose errors are of a lower order.
-static const double least_share_of_force = 0.4;
+static const double least_ratio_of_force = 0.4;
 
 // Largest error of the air's loads between two samples. With a larger one the period of vibrations is near
 // that of the samples, and at half the sampling rate the error is no multiple of the run's.
@@ -131,11 +131,11 @@ static double missed_air(const bough_simulation *s) {
     return missed;
 }
 
-// Error of the run in a channel relative to the difference. A sampled channel that the companion holds one
-// sample longer differs by the change in that time.
-static double share_now(const bough_channel *channel, double share, double share_held) {
-    if (channel->sampled) return share_held;
-    return channel->kind == BOUGH_KIND_FORCE ? fmax(share, least_share_of_force) : share;
+// 1/Q of a channel. A sampled channel that the companion holds one sample longer differs by the change in
+// that time.
+static double ratio_of(const bough_channel *channel, double ratio, double ratio_held) {
+    if (channel->sampled) return ratio_held;
+    return channel->kind == BOUGH_KIND_FORCE ? fmax(ratio, least_ratio_of_force) : ratio;
 }
 
 // The length of the vector that the channel is a component of.
@@ -161,7 +161,7 @@ static double change_of(const bough_companion *c, int i) {
 static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->coarser.value[i];
-    return held ? c->share_held * change_of(c, i) : 0;
+    return held ? c->ratio_held * change_of(c, i) : 0;
 }
 
 // Whether an error is noticeable and a tenth of what the channel's is so far.
@@ -181,7 +181,7 @@ static void compare_finer(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (held && channel->sampled) continue; // an older sample than the finer one
-        double error = f->share * fabs(difference(channel, c->value[i], f->other.value[i]));
+        double error = f->ratio * fabs(difference(channel, c->value[i], f->other.value[i]));
         if (!(error > c->least[i])) continue;
         grows = grows || is_large(c, i, error);
         c->least[i] = error;
@@ -235,10 +235,10 @@ static double reach(const bough_companion *c) {
     return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
-enum { MANY = 8 };                  // steps of the run, and corners among them
-enum { APART = 3 };                 // macro steps from one corner to the next, the most
-enum { STRETCH = 32 };              // macro steps in which corners are counted anew
-static const double one_each = 1.5; // steps of the integrator in each of the run's
+enum { MANY = 8 };                   // steps of the run, and corners among them
+enum { SPACING = 3 };                // macro steps from corner to corner, the largest mean of close ones
+enum { COUNTED = 32 };               // macro steps after which the counts begin again
+static const double few_steps = 1.5; // of the integrator in each step of the run
 
 // Counts the last corner, unless it follows another in less than a macro step.
 static void count_corners(bough_companion *c) {
@@ -276,13 +276,13 @@ static void split_steps(bough_companion *c) {
     count_corners(c);
     bough_run_counts now = counts_of(c), n = counts_since(&now, &c->counted);
     // the companion of a loose tolerance has half the run's macro steps: several corners are in each of them
-    bool close = bough_coarser_is_loose(scene) ? n.advances >= APART * n.macro_steps
-                                               : n.corners >= MANY && APART * n.corners >= n.macro_steps;
+    bool close = bough_coarser_is_loose(scene) ? n.advances >= SPACING * n.macro_steps
+                                               : n.corners >= MANY && SPACING * n.corners >= n.macro_steps;
     bool same = scene->aero.node == NULL && other->macro_step == c->run->master->macro_step;
-    if ((close || same) && n.advances >= MANY && (double)n.steps <= one_each * (double)n.advances) {
+    if ((close || same) && n.advances >= MANY && (double)n.steps <= few_steps * (double)n.advances) {
         other->split = true;
-        c->share = fmax(c->share, bough_finer_time_share());
-    } else if (n.macro_steps >= STRETCH) {
+        c->ratio = fmax(c->ratio, bough_finer_time_ratio());
+    } else if (n.macro_steps >= COUNTED) {
         c->counted = now;
     }
 }
@@ -290,7 +290,7 @@ static void split_steps(bough_companion *c) {
 // Includes the error of a jump of the air at a time.
 static void take_jump(bough_companion *c, double time) {
     double sample = time * c->run->scene->aero.rate;
-    if (time <= c->run->master->time) c->share = fmax(c->share, 2 * fabs(sample - floor(sample) - 0.5));
+    if (time <= c->run->master->time) c->ratio = fmax(c->ratio, 2 * fabs(sample - floor(sample) - 0.5));
 }
 
 // The run spreads a jump of the wind, or of the loads' ramp, over its sample, the companion over two samples,
@@ -316,7 +316,7 @@ static void compare(bough_companion *c) {
     bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
-    double share = resolved ? c->share : fmax(c->share, 1), share_held = held ? c->share_held : share;
+    double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
     c->flutters = c->flutters || (resolved && missed_air(c->coarser.simulation) > fluttering);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
@@ -324,7 +324,7 @@ static void compare(bough_companion *c) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error = share_now(channel, share, share_held) *
+        double error = ratio_of(channel, ratio, ratio_held) *
                        fabs(difference(channel, c->value[i], c->coarser.value[i]));
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
@@ -426,7 +426,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_take(s, &c->corner, sizeof c->corner);
     c->counted.steps = steps - c->counted.steps;
     bough_snapshot_take(s, &c->compared, sizeof c->compared);
-    bough_snapshot_take(s, &c->share, sizeof c->share);
+    bough_snapshot_take(s, &c->ratio, sizeof c->ratio);
     bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
     bough_snapshot_take(s, c->reason, sizeof c->reason);
     bough_snapshot_take(s, &c->from, sizeof c->from);

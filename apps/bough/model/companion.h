@@ -40,14 +40,14 @@ bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulati
 // The error of the scene's solution relative to its difference to that of such a copy: a quarter, between an
 // order of 2 and of 3; half with a coupling, whose error the copy does not have; more if meshes differ by
 // less than a factor of two; 1 if the mesh is finer or the coupling explicit.
-double bough_coarser_share(const bough_scene *scene, const bough_scene *other);
+double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other);
 
 // The same for the part of the air: loads held constant, an error of order 1, err by twice the difference to
 // a copy of twice the rate.
-double bough_coarser_air_share(const bough_scene *scene, const bough_scene *other);
+double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *other);
 
 // The same for a copy that is coarser in time alone.
-double bough_coarser_time_share(const bough_scene *scene);
+double bough_coarser_time_ratio(const bough_scene *scene);
 
 // Relative tolerance of the whole's integrator, the loosest of the sub-solvers beside another coupling.
 double bough_scene_loosest_rtol(const bough_scene *scene);
@@ -56,8 +56,8 @@ double bough_scene_loosest_rtol(const bough_scene *scene);
 bool bough_coarser_is_loose(const bough_scene *scene);
 
 // The same for a copy that is finer in time, and in air.
-double bough_finer_time_share(void);
-double bough_finer_air_share(const bough_scene *scene);
+double bough_finer_time_ratio(void);
+double bough_finer_air_ratio(const bough_scene *scene);
 
 // Another simulation of a run's scene, with the run's channels.
 typedef struct bough_other_run {
@@ -99,7 +99,7 @@ typedef struct bough_finer {
     bough_other_run other; // its simulation is NULL where the scene has none
     bool follows;          // it runs beside the run
     double from, until;    // from and up to these times [s]
-    double share;          // error of the run relative to the difference
+    double ratio;          // error of the run over the difference
     double work;           // so far (bough_simulation_work)
     long run_steps;        // of the run's solvers so far
     int n_jump;
@@ -155,9 +155,9 @@ typedef struct bough_companion {
     bough_other_run coarser;
     bough_finer finer;
     bough_record record;
-    const bough_channels *channels;      // of the run
-    double share;                        // error of the run relative to the difference
-    double share_held;                   // the same for a channel whose last sample the companion holds
+    const bough_channels *channels; // of the run
+    double ratio;                   // error of the run over the difference: 1/Q of theory (71)
+    double ratio_held;              // the same for a channel of which the companion holds an older sample
     char reason[BOUGH_COMPANION_REASON]; // why errors are not or no longer known; "": they are known
     double from;                         // time from which they are not known [s]
     double motion;                       // largest range of all motion, or value up to 1, in SI units

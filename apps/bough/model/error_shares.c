@@ -148,12 +148,12 @@ static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR,
 
 static between between_companion_and(const bough_companion *c, int kind, double *largest) {
     const bough_scene *run = c->run->scene, *other = c->coarser.simulation->scene;
-    double part = kind == BOUGH_SHARE_MESH               ? bough_coarser_share(run, other)
-                  : kind == BOUGH_SHARE_AIR              ? bough_coarser_air_share(run, other)
-                  : c->coarser.simulation->master->split ? bough_finer_time_share()
-                                                         : bough_coarser_time_share(run);
+    double part = kind == BOUGH_SHARE_MESH               ? bough_coarser_ratio(run, other)
+                  : kind == BOUGH_SHARE_AIR              ? bough_coarser_air_ratio(run, other)
+                  : c->coarser.simulation->master->split ? bough_finer_time_ratio()
+                                                         : bough_coarser_time_ratio(run);
     // channels that the companion holds longer are held longer in two of the further runs, too
-    return (between){part, kind == BOUGH_SHARE_AIR ? c->share_held : part, largest};
+    return (between){part, kind == BOUGH_SHARE_AIR ? c->ratio_held : part, largest};
 }
 
 // A run that is as fine as the run itself in one part differs from the companion by that part and from the
@@ -168,7 +168,7 @@ static bough_status find_share(finding *x, int kind) {
     }
     x->left_alone = most_alone * bough_companion_work(c) + little;
     further f = {x, BOUGH_COARSER_ALL & ~coarser[kind], between_companion_and(c, kind, share->largest),
-                 (between){c->share, c->share_held, share->others}};
+                 (between){c->ratio, c->ratio_held, share->others}};
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (!bough_is_ok(&status)) unknown(share, status.message);
@@ -274,7 +274,7 @@ static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share
     size_t n = (size_t)c->channels->count;
     bool air = kind == BOUGH_SHARE_AIR;
     double *own = bough_arena_doubles(arena, n + 1), *others = x->shares->share[kind].others;
-    double part = air ? bough_finer_air_share(c->run->scene) : bough_finer_time_share();
+    double part = air ? bough_finer_air_ratio(c->run->scene) : bough_finer_time_ratio();
     further f = {.of = x, .parts = air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, .to_run = {part, part, own}};
     x->left_alone = x->left;
     bough_status status = bough_arena_use(run_beside, &f);

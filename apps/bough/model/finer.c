@@ -19,7 +19,7 @@ static const double least_steps = 250;
 static const double least_jump = 0.1;
 
 // Whether the run errs by a coupling or by fixed steps, whatever its tolerance.
-static bool errs_at_any_tolerance(const bough_scene *scene) { return bough_coarser_share(scene, scene) == 1; }
+static bool errs_at_any_tolerance(const bough_scene *scene) { return bough_coarser_ratio(scene, scene) == 1; }
 
 // Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A third copy of a
 // library would write to the companion's file.
@@ -42,7 +42,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     if (!is_wanted(scene)) return bough_ok();
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
-    f->share = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_share();
+    f->ratio = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_ratio();
     f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
     f->n_jump = bough_jump_times(scene, least_jump, NULL);
     f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);

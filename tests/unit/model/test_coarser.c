@@ -82,7 +82,7 @@ TEST(the_error_is_a_part_of_the_difference) {
     static const struct {
         const char *path, *set[2];
         int segments; // of the other's blades; 0: not looked at
-        double share;
+        double ratio;
     } cases[] = {
         {runup, {SEGMENTS(20), MONOLITHIC}, 10, 0.25},
         {runup, {SEGMENTS(16), MONOLITHIC}, 10, 0.75 / (2.56 - 1)},
@@ -108,7 +108,7 @@ TEST(the_error_is_a_part_of_the_difference) {
         coarser x = coarser_of(arena, cases[k].path, cases[k].set[0], cases[k].set[1]);
         for (int i = 3; i <= 5 && cases[k].segments > 0; i++)
             assert_int_equal(x.other->body[i].rod.n_segment, cases[k].segments);
-        check_near(bough_coarser_share(x.scene, x.other), cases[k].share, 1e-12, 0);
+        check_near(bough_coarser_ratio(x.scene, x.other), cases[k].ratio, 1e-12, 0);
     }
 }
 
@@ -148,7 +148,7 @@ TEST(beside_a_finer_mesh_the_air_is_finer_where_it_can_be) {
 TEST(steps_are_little_longer_where_the_whole_difference_counts) {
     static const struct {
         const char *segments, *coupling;
-        double step, rtol, share;
+        double step, rtol, ratio;
     } cases[] = {{SEGMENTS(8), MONOLITHIC, 20e-3, 1.8e-3, 0.25},
                  {SEGMENTS(16), "simulation.coupling={scheme: frozen}", 15e-3, 9e-4, 1}};
     check_arena(arena);
@@ -160,7 +160,7 @@ TEST(steps_are_little_longer_where_the_whole_difference_counts) {
         const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
         check_near(c->simulation.master.step, cases[k].step, 1e-15, 0);
         check_near(c->simulation.master.rtol, cases[k].rtol, 1e-15, 0);
-        check_near(bough_coarser_time_share(scene), cases[k].share, 1e-15, 0);
+        check_near(bough_coarser_time_ratio(scene), cases[k].ratio, 1e-15, 0);
     }
 }
 
@@ -174,14 +174,14 @@ TEST(a_coupling_has_a_monolithic_companion) {
     assert_int_equal(c->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
     check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
-    check_near(bough_coarser_share(x.scene, c), 0.5, 1e-12, 0);
+    check_near(bough_coarser_ratio(x.scene, c), 0.5, 1e-12, 0);
     // fixed steps have an error that the companion's, by tolerance, do not share
     x = coarser_of(arena, runup, "simulation.micro={solver: generalized-alpha, step: 10 ms}", NULL);
-    check_near(bough_coarser_share(x.scene, x.other), 1, 1e-12, 0);
+    check_near(bough_coarser_ratio(x.scene, x.other), 1, 1e-12, 0);
     // a weight other than 1/2 makes the coupling's error one of first order: the whole difference
     x.scene->simulation.micro.solver = BOUGH_ROSENBROCK;
     x.scene->simulation.coupling.options.theta = 0.5;
-    check_near(bough_coarser_share(x.scene, x.other), 0.5, 1e-12, 0);
+    check_near(bough_coarser_ratio(x.scene, x.other), 0.5, 1e-12, 0);
     x.scene->simulation.coupling.options.theta = 0.89;
-    check_near(bough_coarser_share(x.scene, x.other), 1, 1e-12, 0);
+    check_near(bough_coarser_ratio(x.scene, x.other), 1, 1e-12, 0);
 }
