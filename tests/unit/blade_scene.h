@@ -7,7 +7,7 @@
 static inline bough_simulation *blade_scene(bough_arena *arena, int segments) {
     char set[48];
     snprintf(set, sizeof set, "bodies[0].rod.segments=%d", segments);
-    return scene_build(arena, "tests/data/scenes/blade.yaml", (const char *const[]){set, NULL});
+    return scene_build(arena, "tests/data/scenes/blade.yaml", sets_of(set));
 }
 
 #endif

@@ -8,7 +8,9 @@
 
 #include <unistd.h>
 
-static const char *const no_sets[] = {NULL}; // no values are replaced
+// The values that are replaced, one text each; or none.
+#define sets_of(...) ((const char *const[]){__VA_ARGS__, NULL})
+static const char *const no_sets[] = {NULL};
 
 // Reads the scene in that file; `sets` ends with NULL.
 static inline bough_scene *scene_read_file(bough_arena *arena, const char *file, const char *const *sets) {
@@ -41,8 +43,7 @@ static inline bough_simulation *scene_build(bough_arena *arena, const char *path
     bough_simulation *s = scene_build(arena, path, sets)
 
 // The same with the values that are replaced, one text each.
-#define check_build_with(arena, s, path, ...)                                                                \
-    check_build(arena, s, path, ((const char *const[]){__VA_ARGS__, NULL}))
+#define check_build_with(arena, s, path, ...) check_build(arena, s, path, sets_of(__VA_ARGS__))
 
 #define check_run(arena, r, path, sets)                                                                      \
     check_arena(arena);                                                                                      \

@@ -46,7 +46,7 @@ static bough_scene_mode slide_mode(bough_arena *arena, bough_simulation *s) {
 
 static double thrust(const char *wind) {
     check_arena(arena);
-    bough_simulation *s = build(arena, (const char *const[]){wind, NULL});
+    bough_simulation *s = build(arena, sets_of(wind));
     double factor;
     bough_aero_link_hold(s->aero, 0);
     double value = bough_aero_link_data(s->aero, &factor)->thrust;
@@ -56,7 +56,7 @@ static double thrust(const char *wind) {
 // m ẍ + T' ẋ + k x = 0 with T' the slope of the thrust over the wind.
 TEST(quasi_steady_damping_is_the_slope_of_the_thrust) {
     check_arena(arena);
-    bough_simulation *s = build(arena, (const char *const[]){"modes.air=quasi-steady", NULL});
+    bough_simulation *s = build(arena, sets_of("modes.air=quasi-steady"));
     bough_scene_mode m = slide_mode(arena, s);
     double slope = (thrust("aero.wind.speed=9.01 m/s") - thrust("aero.wind.speed=8.99 m/s")) / 0.02;
     double omega = 2 * BOUGH_PI * m.frequency, mass = 1e6 / (omega * omega);
@@ -91,14 +91,12 @@ TEST(dynamic_damping_is_that_of_time_marching) {
         snprintf(inflow, sizeof inflow, "aero.induction.inflow=%s", air[k][0]);
         snprintf(stall, sizeof stall, "aero.dynamic_stall=%s", air[k][1]);
         check_arena(arena);
-        bough_simulation *s = build(arena, (const char *const[]){inflow, stall, "modes.air=dynamic", NULL});
+        bough_simulation *s = build(arena, sets_of(inflow, stall, "modes.air=dynamic"));
         bough_scene_mode m = slide_mode(arena, s);
         bough_simulation *run =
-            build(arena, (const char *const[]){inflow, stall, "simulation.initial=equilibrium",
-                                               "simulation.duration=20 s",
-                                               "loads[0]={body: nacelle, force: [1e5, 0, 0], factor: {times: "
-                                               "[0, 0.5, 1], values: [0, 1, 0]}}",
-                                               NULL});
+            build(arena, sets_of(inflow, stall, "simulation.initial=equilibrium", "simulation.duration=20 s",
+                                 "loads[0]={body: nacelle, force: [1e5, 0, 0], factor: {times: "
+                                 "[0, 0.5, 1], values: [0, 1, 0]}}"));
         double growth, frequency;
         march(run, &growth, &frequency);
         check_near(m.growth, growth, 2e-3, 0);
@@ -108,17 +106,12 @@ TEST(dynamic_damping_is_that_of_time_marching) {
 
 // The blades bend; next to no air: the reduced system has the modes of the bodies.
 TEST(thin_air_leaves_the_modes_as_they_are) {
-    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
-                          "bodies[3-5].rod.segments=10",
-                          "aero.air_density=1e-9",
-                          "modes.count=8",
-                          "modes.air=frozen",
-                          "simulation.threads=1",
-                          NULL};
     check_arena(arena);
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
-        if (k == 1) sets[4] = "modes.air=quasi-steady";
+        const char *const *sets = sets_of(
+            "bodies[2].joint.speed=12.1 rpm", "bodies[3-5].rod.segments=10", "aero.air_density=1e-9",
+            "modes.count=8", k == 0 ? "modes.air=frozen" : "modes.air=quasi-steady", "simulation.threads=1");
         bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
         check_ok(bough_vibration_find(arena, s, 8, &v[k]));
         assert_int_equal(v[k].found, 8);
@@ -133,16 +126,10 @@ TEST(thin_air_leaves_the_modes_as_they_are) {
 // Modes that are not kept follow the air's forces at once: few wanted modes are as exact as the same of many.
 TEST(modes_do_not_depend_on_how_many_are_wanted) {
     enum { FEW = 6, MANY = 30 };
-    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
-                          "bodies[3-5].rod.segments=10",
-                          "gravity=[0, 0, 0]",
-                          "aero.ramp=[0 s, 0 s]",
-                          "aero.wind.speed=9 m/s",
-                          "bodies[3-5].pitch=0 deg",
-                          "modes.air=quasi-steady",
-                          "simulation.threads=1",
-                          "loads[0].torque=0",
-                          NULL};
+    const char *const *sets =
+        sets_of("bodies[2].joint.speed=12.1 rpm", "bodies[3-5].rod.segments=10", "gravity=[0, 0, 0]",
+                "aero.ramp=[0 s, 0 s]", "aero.wind.speed=9 m/s", "bodies[3-5].pitch=0 deg",
+                "modes.air=quasi-steady", "simulation.threads=1", "loads[0].torque=0");
     check_arena(arena);
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
@@ -178,16 +165,14 @@ TEST(held_blades_come_to_rest_in_stall) {
                                         "bodies[3-5].pitch=20 deg"};
     for (int k = 0; k < 3; k++) {
         check_arena(arena);
-        bough_simulation *s =
-            scene_build(arena, "apps/turbine/runup.yaml",
-                        (const char *const[]){
-                            "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: {angle: 0}, "
-                            "placement: [move z 2 m, move x -5 m]}",
-                            "bodies[3-5].rod.segments=10", pitch[k], "loads=[]", "aero.wind.speed=24 m/s",
-                            "aero.dynamic_stall=hgm", "aero.rate=25 Hz", "simulation.macro_step=40 ms",
-                            "simulation.coupling.scheme=monolithic", "simulation.master.step=20 ms",
-                            "simulation.master.rtol=3e-3", "simulation.error_estimate=none",
-                            "simulation.threads=1", NULL});
+        bough_simulation *s = scene_build(
+            arena, "apps/turbine/runup.yaml",
+            sets_of("bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: {angle: 0}, "
+                    "placement: [move z 2 m, move x -5 m]}",
+                    "bodies[3-5].rod.segments=10", pitch[k], "loads=[]", "aero.wind.speed=24 m/s",
+                    "aero.dynamic_stall=hgm", "aero.rate=25 Hz", "simulation.macro_step=40 ms",
+                    "simulation.coupling.scheme=monolithic", "simulation.master.step=20 ms",
+                    "simulation.master.rtol=3e-3", "simulation.error_estimate=none", "simulation.threads=1"));
         fastest(s, &s->beam[0], 50);
         double early = fastest(s, &s->beam[0], 50);
         fastest(s, &s->beam[0], 100);
@@ -210,7 +195,7 @@ static bough_scene_mode fluttering(double speed, const char *mass) {
     snprintf(wind, sizeof wind, "aero.wind.speed=%.6f m/s", speed);
     check_arena(arena);
     bough_vibration v;
-    bough_simulation *s = scene_build(arena, wing, (const char *const[]){wind, mass, NULL});
+    bough_simulation *s = scene_build(arena, wing, sets_of(wind, mass));
     check_ok(bough_vibration_find(arena, s, 2, &v));
     assert_int_equal(v.found, 2);
     bough_scene_mode mode = v.mode[0].growth > v.mode[1].growth ? v.mode[0] : v.mode[1];
@@ -254,7 +239,7 @@ TEST(modes_are_within_their_residuals) {
     check_arena(arena);
     bough_vibration v;
     bough_state_space x;
-    bough_simulation *s = scene_build(arena, wing, (const char *const[]){NULL});
+    bough_simulation *s = scene_build(arena, wing, no_sets);
     check_ok(bough_vibration_find(arena, s, 2, &v));
     check_ok(bough_state_space_find(arena, s, 0, &x));
     size_t n = (size_t)x.n;
@@ -312,9 +297,9 @@ TEST(wing_flutters_in_time_as_its_modes_say) {
 // Of the air in equilibrium at a speed of the rotor.
 static double torque_at(const char *wind, const char *speed) {
     check_arena(arena);
-    bough_simulation *s = scene_build(
-        arena, "apps/turbine/land-operation.yaml",
-        (const char *const[]){OPERATION("12 m/s"), wind, speed, "simulation.initial=equilibrium", NULL});
+    bough_simulation *s =
+        scene_build(arena, "apps/turbine/land-operation.yaml",
+                    sets_of(OPERATION("12 m/s"), wind, speed, "simulation.initial=equilibrium"));
     double factor, torque = bough_aero_link_data(s->aero, &factor)->torque;
     return torque;
 }

@@ -28,11 +28,9 @@ static bough_vibration modes_with(bough_arena *arena, const char *const *more) {
 // an azimuth changes.
 TEST(modes_are_those_of_the_mean_over_azimuths) {
     check_arena(arena);
-    const bough_vibration here = modes_with(arena, (const char *const[]){NULL});
-    const bough_vibration there =
-        modes_with(arena, (const char *const[]){"bodies[hub].joint.angle=60 deg", NULL});
-    const bough_vibration between =
-        modes_with(arena, (const char *const[]){"bodies[hub].joint.angle=15 deg", NULL});
+    const bough_vibration here = modes_with(arena, no_sets);
+    const bough_vibration there = modes_with(arena, sets_of("bodies[hub].joint.angle=60 deg"));
+    const bough_vibration between = modes_with(arena, sets_of("bodies[hub].joint.angle=15 deg"));
     double change = 0;
     assert_int_equal(here.n_azimuth, 4);
     for (int k = 0; k < COUNT; k++) {
@@ -49,11 +47,10 @@ TEST(modes_are_those_of_the_mean_over_azimuths) {
 TEST(azimuths_of_a_symmetric_rotor_change_nothing) {
     check_arena(arena);
     const bough_vibration v = modes_with(
-        arena, (const char *const[]){
-                   "gravity=[0, 0, 0]",
-                   "aero.tower={influence: potential, diameter: [1e-3, 1e-3], height: [0 m, 87.6 m]}",
-                   "aero.induction.skew=none",
-                   "bodies[hub].joint.placement=[move z 1.96256 m, move x -5.0191 m]", NULL});
+        arena, sets_of("gravity=[0, 0, 0]",
+                       "aero.tower={influence: potential, diameter: [1e-3, 1e-3], height: [0 m, 87.6 m]}",
+                       "aero.induction.skew=none",
+                       "bodies[hub].joint.placement=[move z 1.96256 m, move x -5.0191 m]"));
     for (int k = 0; k < COUNT; k++) {
         assert_true(v.mode[k].frequency_change < 1e-3);
         assert_true(v.mode[k].damping_change < 2e-4); // 4e-4 where blades blend in the wrong direction

@@ -115,8 +115,7 @@ TEST(rotor_follows_torque_pitch_and_wind) {
                       quiet[] = "gravity=[0, 0, 0]";
     check_arena(arena);
     bough_simulation *s =
-        scene_build(arena, "apps/turbine/power.yaml",
-                    (const char *const[]){rigid, ramp, quiet, "modes.air=quasi-steady", NULL});
+        scene_build(arena, "apps/turbine/power.yaml", sets_of(rigid, ramp, quiet, "modes.air=quasi-steady"));
     bough_state_space x = linear(arena, s);
     int speed = find(x.state, x.n, "hub speed 1"),
         torque = find(x.input, x.n_input, "generator torque, fast shaft");
@@ -127,8 +126,7 @@ TEST(rotor_follows_torque_pitch_and_wind) {
     const char *const more[4] = {"aero.wind.speed=8.0001 m/s", "aero.wind.speed=7.9999 m/s",
                                  "bodies[3-5].pitch=1e-5 rad", "bodies[3-5].pitch=-1e-5 rad"};
     double value[4];
-    for (int k = 0; k < 4; k++)
-        value[k] = air_of((const char *const[]){rigid, ramp, quiet, more[k], NULL}).torque;
+    for (int k = 0; k < 4; k++) value[k] = air_of(sets_of(rigid, ramp, quiet, more[k])).torque;
     check_near(inertia * entry(x.b, x.n, speed, wind), (value[0] - value[1]) / 2e-4, 1e-4, 0);
     // the inertia turns with the blades, too
     check_near(inertia * entry(x.b, x.n, speed, pitch), (value[2] - value[3]) / 2e-5, 1e-3, 0);

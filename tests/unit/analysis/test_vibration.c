@@ -22,8 +22,7 @@ static found modes_of(const char *path, const char *const *sets, int count) {
 
 // ω² = g/l
 TEST(pendulum_swings) {
-    const char *sets[] = {NULL};
-    found f = modes_of(pendulum, sets, 4);
+    found f = modes_of(pendulum, no_sets, 4);
     assert_int_equal(f.v.found, 1);
     check_near(f.v.mode[0].frequency, sqrt(9.81) / (2 * BOUGH_PI), 1e-8, 0);
     check_near(f.v.mode[0].damping, 0, 0, 1e-9);
@@ -61,8 +60,7 @@ TEST(closed_loops_swing_as_one) {
 // Clamped and propped: β² √(EI/ρA)/2πL², β = 3.926602, in both planes; shear and inertia of the
 // sections lower it a little.
 TEST(propped_beam_vibrates_in_both_planes) {
-    const char *sets[] = {NULL};
-    found f = modes_of("tests/data/scenes/prop.yaml", sets, 3);
+    found f = modes_of("tests/data/scenes/prop.yaml", no_sets, 3);
     double exact = 3.926602 * 3.926602 * sqrt(1e5 / 2) / (2 * BOUGH_PI * 9);
     for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, exact, 3e-3, 0);
     assert_true(f.v.mode[2].frequency > 2 * exact);
@@ -189,13 +187,8 @@ TEST(whirl_is_split_by_the_rotation) {
 
 // What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
 TEST(gravity_averages_out) {
-    const char *with[] = {HUB("{speed: 1e-3 rpm}"),
-                          "aero.ramp=[0, 1000]",
-                          "aero.wind.speed=0",
-                          "loads=[]",
-                          COARSE,
-                          "modes.shapes=true",
-                          NULL};
+    const char *const *with = sets_of(HUB("{speed: 1e-3 rpm}"), "aero.ramp=[0, 1000]", "aero.wind.speed=0",
+                                      "loads=[]", COARSE, "modes.shapes=true");
     const char *without[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
     found a = modes_of(runup, with, 6), b = modes_of(runup, without, 6);
     for (int k = 0; k < 6; k++) {
@@ -219,7 +212,7 @@ TEST(another_mesh_moves_the_modes_as_it_should) {
         assert_true(apart > 1e-4);
         check_near(a.v.mode[k].moved, apart, 1e-3, 0);
     }
-    found rigid = modes_of(pendulum, (const char *const[]){NULL}, 1);
+    found rigid = modes_of(pendulum, no_sets, 1);
     check_ok(bough_vibration_compare(rigid.arena, rigid.s, &rigid.v, &compared));
     assert_false(compared);
 }
@@ -279,18 +272,12 @@ TEST(azimuth_does_not_matter) {
         "bodies[1].joint={kind: revolute, parent: tower, axis: z, stiffness: 3e8, placement: "
         "[move z 87.6 m]}";
     const char *zero[] = {HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE, "modes.at=undeformed", NULL};
-    const char *turned[] = {HUB("{speed: 12.1 rpm}"),
-                            nacelle,
-                            CALM,
-                            COARSE,
-                            "bodies[3].joint.placement=[rotate x 40 deg, rotate y -2.5 deg, "
-                            "move z 1.5 m]",
-                            "bodies[4].joint.placement=[rotate x 160 deg, rotate y -2.5 deg, "
-                            "move z 1.5 m]",
-                            "bodies[5].joint.placement=[rotate x 280 deg, rotate y -2.5 deg, "
-                            "move z 1.5 m]",
-                            "modes.at=undeformed",
-                            NULL};
+    const char *const *turned =
+        sets_of(HUB("{speed: 12.1 rpm}"), nacelle, CALM, COARSE,
+                "bodies[3].joint.placement=[rotate x 40 deg, rotate y -2.5 deg, move z 1.5 m]",
+                "bodies[4].joint.placement=[rotate x 160 deg, rotate y -2.5 deg, move z 1.5 m]",
+                "bodies[5].joint.placement=[rotate x 280 deg, rotate y -2.5 deg, move z 1.5 m]",
+                "modes.at=undeformed");
     found a = modes_of(runup, zero, 8), b = modes_of(runup, turned, 8);
     double support = 0;
     for (int k = 0; k < 8; k++) {
@@ -306,15 +293,12 @@ TEST(azimuth_does_not_matter) {
 // that the nacelle carries.
 TEST(either_end_of_the_shaft_may_be_the_rotor) {
     const char *usual[] = {"loads=[]", "bodies[hub].joint.speed=12.1 rpm", "aero=null", COARSE_LAND, NULL};
-    const char *other[] = {
-        "loads=[]",
-        "turbine.rotor=generator",
+    const char *const *other = sets_of(
+        "loads=[]", "turbine.rotor=generator",
         "bodies[hub].joint={kind: revolute, axis: x, parent: generator, stiffness: 8.67637e8, damping: 6.215e6}",
         "bodies[generator].joint={kind: revolute, axis: x, parent: nacelle, speed: 12.1 rpm, placement: "
         "[move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}",
-        "aero=null",
-        COARSE_LAND,
-        NULL};
+        "aero=null", COARSE_LAND);
     found a = modes_of("apps/turbine/land.yaml", usual, 10),
           b = modes_of("apps/turbine/land.yaml", other, 10);
     assert_int_equal(b.v.n_blade, 3);

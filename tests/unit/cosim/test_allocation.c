@@ -182,15 +182,10 @@ TEST_IN_FOLDER(every_scheme_and_sub_solver_takes_no_memory) {
     static const char *const solver[] = {"cvode-bdf", "arkode-esdirk", "ida", "generalized-alpha",
                                          "rosenbrock"};
     char scheme_set[64], solver_set[64], what[128];
-    const char *sets[] = {"simulation.duration=2 s",
-                          "simulation.threads=1",
-                          "simulation.macro_step=1 ms",
-                          "simulation.micro.step=1 ms",
-                          "aero.rate=500 Hz",
-                          "bodies[3-5].rod.segments=8",
-                          scheme_set,
-                          solver_set,
-                          NULL};
+    const char *const *sets =
+        sets_of("simulation.duration=2 s", "simulation.threads=1", "simulation.macro_step=1 ms",
+                "simulation.micro.step=1 ms", "aero.rate=500 Hz", "bodies[3-5].rod.segments=8", scheme_set,
+                solver_set);
     for (int i = 0; bough_scheme_name(i); i++) {
         for (int k = 0; k < 4; k++) {
             const char *scheme = bough_scheme_name(i);
@@ -206,13 +201,9 @@ TEST_IN_FOLDER(every_scheme_and_sub_solver_takes_no_memory) {
 TEST_IN_FOLDER(every_master_solver_takes_no_memory) {
     if (!CAN_COUNT) skip();
     char scheme_set[64], solver_set[64], what[128];
-    const char *sets[] = {"simulation.duration=2 s",
-                          "simulation.threads=1",
-                          "simulation.macro_step=2 ms",
-                          "bodies[3-5].rod.segments=8",
-                          scheme_set,
-                          solver_set,
-                          NULL};
+    const char *const *sets =
+        sets_of("simulation.duration=2 s", "simulation.threads=1", "simulation.macro_step=2 ms",
+                "bodies[3-5].rod.segments=8", scheme_set, solver_set);
     for (int whole = 0; whole < 2; whole++) {
         for (int i = 0; bough_integrator_name(i); i++) {
             const char *scheme = whole ? "monolithic" : "ramp", *solver = bough_integrator_name(i);
@@ -227,12 +218,9 @@ TEST_IN_FOLDER(every_master_solver_takes_no_memory) {
 
 TEST_IN_FOLDER(waveforms_by_newton_take_no_memory) {
     if (!CAN_COUNT) skip();
-    const char *sets[] = {"simulation.duration=2 s",
-                          "simulation.threads=1",
-                          "simulation.coupling.scheme=iterated",
-                          "simulation.coupling.exchange=waveform",
-                          "simulation.coupling.accelerator=interface-newton",
-                          NULL};
+    const char *const *sets =
+        sets_of("simulation.duration=2 s", "simulation.threads=1", "simulation.coupling.scheme=iterated",
+                "simulation.coupling.exchange=waveform", "simulation.coupling.accelerator=interface-newton");
     count_steps(*context, runup, COUNTED, "waveforms by Newton", sets);
 }
 

@@ -245,12 +245,11 @@ TEST(errors_follow_the_accuracy) {
 // Without the limit of the longest step, run and companion lose the second mode.
 TEST(errors_of_small_vibrations) {
     static const char beam[] = "tests/data/scenes/small-vibration.yaml";
-    static const char *const sets[] = {NULL};
     static recorded run, truth;
-    record(beam, sets, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
-    record(beam, sets, "simulation.accuracy=0.005", &run);
+    record(beam, no_sets, "simulation.master={solver: ida, rtol: 1e-9}", &truth);
+    record(beam, no_sets, "simulation.accuracy=0.005", &run);
     double error = error_of(&run, &truth);
-    record(beam, sets, "simulation.master.step=20 ms", &run);
+    record(beam, no_sets, "simulation.master.step=20 ms", &run);
     print_message("%.2g, with the macro step %.2g\n", error, error_of(&run, &truth));
     assert_true(error < 0.005);
     assert_true(error_of(&run, &truth) > 2 * error);
@@ -261,10 +260,8 @@ GROUP(enter, leave)
 // A rod that carries a weight around: its tangents change within few steps, and are renewed before steps
 // fail.
 TEST(tangents_of_what_turns_are_renewed_in_time) {
-    check_arena(arena);
-    const char *const sets[] = {"simulation.duration=3 s", "simulation.error_estimate=none", NULL};
-    bough_run r;
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/templates/mechanism/scene.yaml", sets), &r));
+    check_run(arena, r, "apps/templates/mechanism/scene.yaml",
+              sets_of("simulation.duration=3 s", "simulation.error_estimate=none"));
     while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
     bough_statistics sum = bough_run_statistics(&r, r.simulation->master->assembly->n_member);
     print_message("%ld steps, %ld failed\n", (long)sum.steps, (long)sum.failed_steps);

@@ -356,15 +356,9 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
     char set[32], kind[40];
     snprintf(set, sizeof set, "aero.rate=%s", rate);
     snprintf(kind, sizeof kind, "bodies[3-5].fidelity=%s", fidelity);
-    const char *const sets[] = {set,
-                                kind,
-                                "aero.ramp=[0 s, 0 s]",
-                                "bodies[2].joint.speed=0.8 rad/s", // no fading of the wake
-                                "simulation.macro_step=2.5 ms",
-                                "simulation.micro.step=2.5 ms",
-                                "simulation.threads=1",
-                                NULL};
-    check_build(arena, s, "apps/turbine/runup.yaml", sets);
+    check_build_with(arena, s, "apps/turbine/runup.yaml", set, kind, "aero.ramp=[0 s, 0 s]",
+                     "bodies[2].joint.speed=0.8 rad/s", // no fading of the wake
+                     "simulation.macro_step=2.5 ms", "simulation.micro.step=2.5 ms", "simulation.threads=1");
     for (int k = 0; k < ROWS; k++) {
         bough_quaternion p;
         for (int i = 0; i < 8; i++) scene_step(s);

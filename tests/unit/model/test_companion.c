@@ -86,14 +86,10 @@ static void run_beside(bough_arena *arena, const char *scene, const char *const 
 
 // The whole error of motion, by mesh, air, steps and coupling, for two schemes.
 TEST(the_whole_error_is_estimated) {
-    const char *const truth_sets[] = {"simulation.duration=2 s",
-                                      "simulation.coupling={scheme: monolithic}",
-                                      "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}",
-                                      "simulation.macro_step=5 ms",
-                                      "simulation.error_estimate=none",
-                                      "bodies[3-5].rod.segments=72",
-                                      "aero.rate=200",
-                                      NULL};
+    const char *const *truth_sets = sets_of(
+        "simulation.duration=2 s", "simulation.coupling={scheme: monolithic}",
+        "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}", "simulation.macro_step=5 ms",
+        "simulation.error_estimate=none", "bodies[3-5].rod.segments=72", "aero.rate=200");
     outcome *truth = run_for("apps/turbine/runup.yaml", STEPS, truth_sets);
     assert_false(truth->compared);
     static const char *const coupling[] = {"simulation.coupling={scheme: ramp, theta: auto}",
@@ -250,14 +246,10 @@ TEST(a_vibration_that_both_lose_is_an_error) {
          "motion: {speed: {from: 0, to: 6.197e-3, ramp: [1.007 s, 1.0072 s]}}}",
          1.0071}};
     for (int k = LET_GO; k <= MOVED; k++) {
-        const char *const sets[] = {"simulation.duration=2 s",
-                                    "simulation.macro_step=20 ms",
-                                    "simulation.master={solver: rosenbrock, rtol: 3e-4}",
-                                    way[k].gravity,
-                                    way[k].cause,
-                                    "bodies[0].rod.damping=[5e-6, 5e-6, 5e-6, 5e-6, 5e-6, 5e-6]",
-                                    "bodies[1].mass=0.2",
-                                    NULL};
+        const char *const *sets =
+            sets_of("simulation.duration=2 s", "simulation.macro_step=20 ms",
+                    "simulation.master={solver: rosenbrock, rtol: 3e-4}", way[k].gravity, way[k].cause,
+                    "bodies[0].rod.damping=[5e-6, 5e-6, 5e-6, 5e-6, 5e-6, 5e-6]", "bodies[1].mass=0.2");
         outcome *o = run_for("tests/data/scenes/tip-weight.yaml", STEPS, sets);
         int i = find(o, "beamTipX");
         double error = 0, of = w * sqrt(1 - damping * damping);
@@ -332,13 +324,9 @@ TEST(loose_sub_solvers_have_a_finer_solution) {
         {"simulation.coupling={scheme: ramp}", "simulation.micro={rtol: 3e-4}"},
         {"simulation.coupling={scheme: frozen}", "simulation.micro={rtol: 1e-6}"}};
     for (int k = 0; k < 3; k++) {
-        const char *const sets[] = {way[k][0],
-                                    way[k][1],
-                                    "simulation.master={rtol: 1e-6}",
-                                    "simulation.macro_step=5 ms",
-                                    "bodies[weight].mass=50",
-                                    "bodies[weight].inertia=[50, 50, 50]",
-                                    NULL};
+        const char *const *sets =
+            sets_of(way[k][0], way[k][1], "simulation.master={rtol: 1e-6}", "simulation.macro_step=5 ms",
+                    "bodies[weight].mass=50", "bodies[weight].inertia=[50, 50, 50]");
         check_run(arena, r, "tests/data/scenes/mid-weight.yaml", sets);
         assert_int_equal(r.companion->finer.other.simulation != NULL, k > 0);
     }
@@ -412,13 +400,10 @@ TEST(a_mesh_far_beyond_the_bound_is_proved_early) {
 TEST(finer_samples_prove_an_error_of_the_air) {
     static const char scene[] = "apps/turbine/land-operation.yaml";
     const char *const truth_sets[] = {COARSE_BLADES, "simulation.macro_step=5 ms", "aero.rate=200", NULL};
-    const char *const sets[] = {COARSE_BLADES,
-                                "simulation.macro_step=20 ms",
-                                "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}",
-                                "simulation.error_estimate=companion",
-                                "simulation.error_shares=true",
-                                "aero.rate=50",
-                                NULL};
+    const char *const *sets =
+        sets_of(COARSE_BLADES, "simulation.macro_step=20 ms",
+                "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}",
+                "simulation.error_estimate=companion", "simulation.error_shares=true", "aero.rate=50");
     static const char *const channel[] = {"TwstDefl3", NULL};
     check_arena(arena);
     bough_run r;
@@ -436,10 +421,9 @@ TEST(finer_samples_prove_an_error_of_the_air) {
 // Modal blades vibrate under air at half the rate, whatever the mesh is beside it; finer samples show what is
 // left of their error, and with it of the other parts.
 TEST(a_proof_bounds_the_other_parts) {
-    static const char *const sets[] = {"simulation.duration=12 s", "bodies[blade1].fidelity=modal",
-                                       "bodies[blade2].fidelity=modal", "bodies[blade3].fidelity=modal",
-                                       NULL};
-    check_ended_run(arena, r, "apps/turbine/land.yaml", sets);
+    check_ended_run(arena, r, "apps/turbine/land.yaml",
+                    sets_of("simulation.duration=12 s", "bodies[blade1].fidelity=modal",
+                            "bodies[blade2].fidelity=modal", "bodies[blade3].fidelity=modal"));
     bough_error_shares shares = find_shares(arena, &r);
     int twist = bough_channels_find(&r.channels, "TwstDefl1");
     double sum = 0, whole = r.companion->error[twist];
@@ -494,13 +478,9 @@ TEST(a_companion_whose_blades_flutter_is_replaced) {
     const char *const truth_sets[] = {
         SLOW_PITCH,      solver, "bodies[3-5].rod.segments=32", "simulation.macro_step=10 ms",
         "aero.rate=100", NULL};
-    const char *const sets[] = {SLOW_PITCH,
-                                solver,
-                                "bodies[3-5].rod.segments=16",
-                                "simulation.macro_step=20 ms",
-                                "simulation.error_estimate=companion",
-                                "aero.rate=50",
-                                NULL};
+    const char *const *sets =
+        sets_of(SLOW_PITCH, solver, "bodies[3-5].rod.segments=16", "simulation.macro_step=20 ms",
+                "simulation.error_estimate=companion", "aero.rate=50");
     check_arena(arena);
     bough_run r;
     double error[4], before[4];
@@ -516,12 +496,9 @@ TEST(a_companion_whose_blades_flutter_is_replaced) {
 
 // An iteration that does not converge goes on where errors are known, and a copy of such a run does, too.
 TEST(a_further_run_goes_on_as_the_run_does) {
-    const char *const sets[] = {"simulation.coupling={scheme: iterated, iterations: 1, tolerance: 1e-12}",
-                                NULL};
-    check_arena(arena);
-    bough_run r;
+    check_run(arena, r, example,
+              sets_of("simulation.coupling={scheme: iterated, iterations: 1, tolerance: 1e-12}"));
     bough_other_run copy;
-    check_ok(bough_run_create(arena, scene_read(arena, example, sets), &r));
     check_ok(bough_other_run_build(arena, r.simulation, 0, &copy));
     for (int k = 0; k < 4; k++) {
         check_ok(bough_run_step(&r));
@@ -617,12 +594,8 @@ TEST(a_jump_of_the_air_has_an_error) {
                  {"aero.ramp=[0.622 s, 0.622 s]", "aero.hold=constant"}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         const char *const sets[] = {"simulation.duration=1.02 s", cases[n].jump, cases[n].hold, NULL};
-        const char *const truth_sets[] = {sets[0],
-                                          sets[1],
-                                          "simulation.macro_step=2.5 ms",
-                                          "aero.rate=400 Hz",
-                                          "simulation.error_estimate=none",
-                                          NULL};
+        const char *const *truth_sets = sets_of(sets[0], sets[1], "simulation.macro_step=2.5 ms",
+                                                "aero.rate=400 Hz", "simulation.error_estimate=none");
         outcome *truth = run_for("apps/turbine/runup-stages.yaml", 51, truth_sets);
         outcome *o = run_for("apps/turbine/runup-stages.yaml", 51, sets);
         const char *const names[] = {"TwstDefl1", "OoPDefl1", "RotSpeed"};

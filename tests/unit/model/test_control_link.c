@@ -27,12 +27,8 @@ TEST(law_holds_speed_and_power) {
 // Blades that nobody pitches and that stand beyond power_pitch: from standstill in a light wind the generator
 // has no torque below cut-in, and at 9 rpm that of the best tip-speed ratio.
 TEST(law_brakes_unsteered_blades_only) {
-    static const char *const sets[] = {RIGID,
-                                       "aero.wind.speed=6 m/s",
-                                       "control.pitch=false",
-                                       "bodies[3-5].pitch=10 deg",
-                                       "bodies[2].joint.speed=0 rpm",
-                                       NULL};
+    const char *const *sets = sets_of(RIGID, "aero.wind.speed=6 m/s", "control.pitch=false",
+                                      "bodies[3-5].pitch=10 deg", "bodies[2].joint.speed=0 rpm");
     built f = open_turbine(sets);
     for (int k = 1; k <= 10; k++) {
         run_until(&f, k);

@@ -21,8 +21,7 @@ static const char *const short_run[] = {"simulation.duration=0.1 s", "simulation
 
 static bough_run create(bough_arena *arena) {
     bough_run run;
-    bough_scene *scene = scene_read(arena, "apps/mechanisms/pendulum.yaml", short_run);
-    check_ok(bough_run_create(arena, scene, &run));
+    check_ok(bough_run_create(arena, scene_read(arena, "apps/mechanisms/pendulum.yaml", short_run), &run));
     return run;
 }
 
@@ -100,11 +99,8 @@ TEST(a_copy_goes_on_with_its_records) {
 
 // An undamped bar under a scheme that cannot hold it.
 TEST(a_failed_run_has_no_values) {
-    static const char *const sets[] = {"simulation.coupling.scheme=frozen", NULL};
-    check_arena(arena);
-    bough_run run;
+    check_run(arena, run, "apps/beams/rubber-bar.yaml", sets_of("simulation.coupling.scheme=frozen"));
     sampled rows = {0};
-    check_ok(bough_run_create(arena, scene_read(arena, "apps/beams/rubber-bar.yaml", sets), &run));
     assert_non_null(bough_run_values(&run));
     bough_run_record_at(&run, (bough_run_record){10, true, .sample = sample, .self = &rows});
     bough_run_all(&run);

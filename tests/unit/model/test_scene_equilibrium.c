@@ -179,19 +179,12 @@ TEST(turbine_on_its_tower_stays_at_rest) {
 
 // At the speed where load and air balance, only the tower excites.
 TEST(turning_rotor_starts_smoothly) {
-    const char *sets[] = {"simulation.initial=equilibrium",
-                          "simulation.threads=1",
-                          "bodies[2].joint.speed=1.49 rad/s",
-                          "loads[0].ramp=[0, 0]",
-                          "aero.ramp=[0, 0]",
-                          "gravity=[0, 0, 0]",
-                          NULL};
-    const char *undeformed[] = {"simulation.threads=1", "bodies[2].joint.speed=1.49 rad/s",
-                                "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
-                                "gravity=[0, 0, 0]",    NULL};
+    static const char *const initial[] = {"simulation.initial=equilibrium", "simulation.initial=undeformed"};
     double moved[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
-        check_build(arena, s, runup, k == 0 ? sets : undeformed);
+        check_build_with(arena, s, runup, initial[k], "simulation.threads=1",
+                         "bodies[2].joint.speed=1.49 rad/s", "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
+                         "gravity=[0, 0, 0]");
         int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
         double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
         for (int step = 0; step < 25; step++) {

@@ -54,8 +54,7 @@ TEST(the_loads_of_a_vertex_are_those_of_the_section) {
 
 // A rigid body has no sections.
 TEST(rigid_bodies_carry_no_section_loads) {
-    const char *sets[] = {NULL};
-    check_build(arena, s, "apps/mechanisms/pendulum.yaml", sets);
+    check_build(arena, s, "apps/mechanisms/pendulum.yaml", no_sets);
     bough_shape shape;
     bough_shape_create(arena, s, &shape);
     double force[9], moment[9] = {1};

@@ -8,14 +8,9 @@
 static const double rpm = BOUGH_PI / 30, degree = BOUGH_PI / 180;
 
 static bough_simulation *operate(bough_arena *arena, const char *wind) {
-    const char *sets[] = {"simulation.initial=operation",
-                          "aero.ramp=[0 s, 0 s]",
-                          wind,
-                          "simulation.duration=12 s",
-                          "simulation.output={interval: 40 ms}",
-                          "bodies[3-5].rod.segments=12",
-                          "simulation.threads=1",
-                          NULL};
+    const char *const *sets =
+        sets_of("simulation.initial=operation", "aero.ramp=[0 s, 0 s]", wind, "simulation.duration=12 s",
+                "simulation.output={interval: 40 ms}", "bodies[3-5].rod.segments=12", "simulation.threads=1");
     return scene_build(arena, "apps/turbine/land-operation.yaml", sets);
 }
 

@@ -32,9 +32,8 @@ static int passed(const bough_simulation *s) {
 }
 
 TEST(within_the_limits_there_is_no_warning) {
-    static const char *const sets[] = {NULL};
     check_arena(arena);
-    assert_int_equal(passed(run(arena, sets, 100)), 0);
+    assert_int_equal(passed(run(arena, no_sets, 100)), 0);
 }
 
 // Blades of a few metres on the shaft at 18 rad/s.
@@ -168,10 +167,7 @@ TEST(a_loop_that_comes_apart_ends_the_run) {
          "of its size: it cannot follow the motion that a joint prescribes, or the steps"},
     };
     for (int k = 0; k < 3; k++) {
-        check_arena(arena);
-        bough_run run;
-        const bough_scene *scene = scene_read(arena, "tests/data/scenes/light-rod.yaml", loop[k].sets);
-        check_ok(bough_run_create(arena, scene, &run));
+        check_run(arena, run, "tests/data/scenes/light-rod.yaml", loop[k].sets);
         bough_status status = bough_ok();
         for (int i = 0; i < 20 && bough_is_ok(&status); i++) status = bough_run_step(&run);
         if (loop[k].text)
@@ -187,13 +183,8 @@ TEST(costly_motions_are_reported) {
     static const char *const stiff[] = {"springs[0-1].stiffness=1e10", "simulation.master.solver=ida",
                                         "simulation.error_estimate=none", NULL};
     for (int k = 0; k < 2; k++) {
-        check_arena(arena);
-        bough_run run;
-        const bough_scene *scene =
-            scene_read(arena, "apps/mechanisms/elastic-double-pendulum.yaml", stiff + k);
-        bough_status status = bough_run_create(arena, scene, &run);
-        for (int i = 0; i < 30 && bough_is_ok(&status); i++) status = bough_run_step(&run);
-        assert_int_equal(status.code, BOUGH_OK);
+        check_run(arena, run, "apps/mechanisms/elastic-double-pendulum.yaml", stiff + k);
+        for (int i = 0; i < 30; i++) check_ok(bough_run_step(&run));
         bough_passing cost = run.simulation->validity->limit[BOUGH_LIMIT_STEPS];
         assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_STEPS : 0);
         assert_true(k == 1 || (cost.time > 0.005 && cost.time < 0.295 && cost.value > 1000));
@@ -207,12 +198,9 @@ TEST(vibrations_that_no_solution_follows_are_reported) {
     static const char *const damping[] = {"bodies[rod].rod.damping=[0, 0, 0, 0, 0, 0]",
                                           "bodies[rod].rod.damping=[1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3]"};
     for (int k = 0; k < 2; k++) {
-        check_arena(arena);
-        bough_run run;
-        const char *const sets[] = {"simulation.macro_step=0.25 s", "simulation.duration=2 s",
-                                    "bodies[rod].rod.stiffness=[1e6, 1e6, 1e7, 8e3, 8e3, 6e3]", damping[k],
-                                    NULL};
-        check_ok(bough_run_create(arena, scene_read(arena, "tests/data/scenes/let-go.yaml", sets), &run));
+        check_run(arena, run, "tests/data/scenes/let-go.yaml",
+                  sets_of("simulation.macro_step=0.25 s", "simulation.duration=2 s",
+                          "bodies[rod].rod.stiffness=[1e6, 1e6, 1e7, 8e3, 8e3, 6e3]", damping[k]));
         for (int i = 0; i < 8; i++) check_ok(bough_run_step(&run));
         assert_int_equal(passed(run.simulation), k == 0 ? 1 << BOUGH_LIMIT_FAST : 0);
         check_near(run.simulation->validity->limit[BOUGH_LIMIT_FAST].time, k == 0 ? 0.25 : 0, 1e-12, 0);

@@ -149,7 +149,7 @@ TEST(windows_pass_their_singular_positions) {
                    {"simulation.master={solver: ida, rtol: 1e-7}", 3e-4},
                    {"simulation.master={solver: rosenbrock, rtol: 1e-6}", 1e-3}};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
-        built f = built_open("apps/mechanisms/four-bar.yaml", (const char *const[]){methods[k].set, NULL});
+        built f = built_open("apps/mechanisms/four-bar.yaml", sets_of(methods[k].set));
         run(&f, 1000);
         print_message("%s\n", methods[k].set);
         check_near(channel(&f, "topX"), 0.328458111534, 0, methods[k].allowed);
@@ -166,7 +166,7 @@ TEST(parallelograms_do_not_fold) {
     for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; k++) {
         char rtol[64];
         snprintf(rtol, sizeof rtol, "simulation.master.rtol=%s", tolerances[k]);
-        built f = built_open("tests/data/scenes/parallelogram.yaml", (const char *const[]){rtol, NULL});
+        built f = built_open("tests/data/scenes/parallelogram.yaml", sets_of(rtol));
         run(&f, 60);
         check_near(remainder(channel(&f, "rockerPos") - channel(&f, "crankPos"), 360), 0, 0, 0.1);
         bough_arena_destroy(f.arena);
@@ -267,13 +267,9 @@ TEST(stages_at_a_loose_tolerance_converge) {
 // With a crank, coupler and rocker that weigh little against the rod the frozen coupling grows.
 TEST(stability_of_closed_loops_is_judged) {
     static const char *const names[] = {"frozen", "ramp"};
-    const char *const light[] = {"bodies[0].mass=0.003",
-                                 "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
-                                 "bodies[1].mass=0.002",
-                                 "bodies[1].inertia=[2e-5, 2e-4, 2e-4]",
-                                 "bodies[2].mass=0.003",
-                                 "bodies[2].inertia=[1e-4, 1e-4, 2e-5]",
-                                 NULL};
+    const char *const *light = sets_of("bodies[0].mass=0.003", "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
+                                       "bodies[1].mass=0.002", "bodies[1].inertia=[2e-5, 2e-4, 2e-4]",
+                                       "bodies[2].mass=0.003", "bodies[2].inertia=[1e-4, 1e-4, 2e-5]");
     for (int k = 0; k < 2; k++) {
         built f = built_open("tests/data/scenes/closed.yaml", light);
         bough_scheme_options options = f.s->master->coupling->options;

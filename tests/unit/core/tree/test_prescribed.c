@@ -30,8 +30,7 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
     snprintf(sets[0], sizeof sets[0], "simulation.coupling.scheme=%s", scheme);
     snprintf(sets[1], sizeof sets[1], "simulation.master.solver=%s", solver);
     snprintf(sets[2], sizeof sets[2], "simulation.master.rtol=%s", rtol);
-    const char *const list[] = {sets[0], sets[1], sets[2], NULL};
-    check_build(arena, s, scene, list);
+    check_build_with(arena, s, scene, sets[0], sets[1], sets[2]);
     const bough_motion *ramped = s->tree->links[RAMPED].motion;
     const bough_motion *table = s->tree->links[STEERED].motion;
     for (long k = 1; !bough_master_done(s->master); k++) {

@@ -43,8 +43,7 @@ static double bar_limit(void) {
 
 // Each point is on the exact curve; the limit points are the curve's; the driver turns back on its way.
 TEST(slides_snap_through_and_back) {
-    const char *sets[] = {NULL};
-    check_build(arena, s, "tests/data/scenes/snapping-slide.yaml", sets);
+    check_build(arena, s, "tests/data/scenes/snapping-slide.yaml", no_sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_ok(walk(s, t, &report));
@@ -106,8 +105,7 @@ TEST(short_of_the_limit) {
 }
 
 TEST(lee_frame) {
-    const char *sets[] = {NULL};
-    check_build(arena, s, "apps/beams/lee-frame.yaml", sets);
+    check_build(arena, s, "apps/beams/lee-frame.yaml", no_sets);
     trace *t = bough_arena_take(arena, sizeof *t);
     bough_path_report report;
     check_ok(walk(s, t, &report));
