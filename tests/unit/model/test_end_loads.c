@@ -5,8 +5,18 @@
 
 static const double g = 9.80665;
 
-// A channel at the start.
-static double at_start(const char *text, const char *name) {
+#define AT_REST "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
+#define ROD "  - {name: a, fidelity: rod, rod: {length: 2, mass: [10, 0, 0, 0.1, 0.1, 0], "
+#define CLAMPED "    joint: {kind: fixed, parent: ground}}\n"
+#define SENSOR "sensors:\n  - {body: a, at: [%.17g]}\n"
+
+// A channel at the start of a scene whose text is printed.
+static double at_start(const char *name, const char *format, ...) {
+    char text[900];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
     check_arena(arena);
     built b = built_from(arena, scene_build_text(arena, text));
     return channel(&b, name);
@@ -14,17 +24,14 @@ static double at_start(const char *text, const char *name) {
 
 // 20 kg of rod, of n segments that shorten, and a head of 5 kg at its end.
 static double column(int n, const char *name) {
-    char text[800];
-    snprintf(
-        text, sizeof text,
-        "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-        "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 20 deg]},\n"
-        "     rod: {length: 2, segments: %d, grading: 0.3, stiffness: [1e6, 1e6, 1e7, 1e5, 1e5, 1e5],\n"
-        "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
+    return at_start(
+        name,
+        AT_REST ROD
+        "grading: 0.3, segments: %d, stiffness: [1e6, 1e6, 1e7, 1e5, 1e5, 1e5]},\n"
+        "    joint: {kind: fixed, parent: ground, placement: [rotate y 20 deg]}}\n"
         "  - {name: head, fidelity: rigid, mass: 5, inertia: [1, 1, 1], joint: {kind: fixed, parent: a}}\n"
         "sensors:\n  - {body: a, at: [0, 2]}\n",
         n);
-    return at_start(text, name);
 }
 
 // Whatever the mesh, the root carries the whole weight and the end the head's.
@@ -40,16 +47,11 @@ TEST(the_root_carries_the_whole_weight) {
 
 // A vertical rod of 10 kg/m that hangs, of n segments, with 100 N downwards at 1.3 m.
 static double hanging(int n, const char *at, double place) {
-    char text[900];
-    snprintf(
-        text, sizeof text,
-        "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-        "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground, placement: [rotate y 180 deg]},\n"
-        "     rod: {length: 2, segments: %d, stiffness: [1e8, 1e8, 1e9, 1e6, 1e6, 1e6],\n"
-        "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
-        "loads:\n  - {body: a, at: %s, force: [0, 0, -100]}\nsensors:\n  - {body: a, at: [%.17g]}\n",
-        n, at, place);
-    return at_start(text, "aSpn1FLz");
+    return at_start("aSpn1FLz",
+                    AT_REST ROD "segments: %d, stiffness: [1e8, 1e8, 1e9, 1e6, 1e6, 1e6]},\n"
+                                "    joint: {kind: fixed, parent: ground, placement: [rotate y 180 deg]}}\n"
+                                "loads:\n  - {body: a, at: %s, force: [0, 0, -100]}\n" SENSOR,
+                    n, at, place);
 }
 
 // The force in a section is the weight and the load beyond it, within segments too; a load at a vertex makes
@@ -75,14 +77,12 @@ TEST(the_moment_within_segments_is_a_parabola) {
         "gravity: [2, 0, 0]", "gravity: [0, 0, 0]\nloads: [{body: a, along: [0, 2], force: [20, 0, 0]}]"};
     for (int k = 0; k < 2; k++) {
         for (double s = 0; s <= 2; s += 0.08) {
-            char text[900];
-            snprintf(text, sizeof text,
-                     "%s\nsimulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-                     "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground},\n"
-                     "     rod: {length: 2, segments: 5, stiffness: [1e9, 1e9, 1e10, 1e6, 1e6, 1e6],\n"
-                     "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\nsensors:\n  - {body: a, at: [%.17g]}\n",
-                     cause[k], s);
-            check_near(at_start(text, "aSpn1MLy") * 1e3, 20 * (2 - s) * (2 - s) / 2, 0, 1e-5);
+            double moment =
+                at_start("aSpn1MLy",
+                         "%s\n" AT_REST ROD
+                         "segments: 5, stiffness: [1e9, 1e9, 1e10, 1e6, 1e6, 1e6]},\n" CLAMPED SENSOR,
+                         cause[k], s);
+            check_near(moment * 1e3, 20 * (2 - s) * (2 - s) / 2, 0, 1e-5);
         }
     }
 }
@@ -90,53 +90,41 @@ TEST(the_moment_within_segments_is_a_parabola) {
 // A cantilever of 2 m under a load that grows from 20 to 60 N/m along it, of few segments.
 TEST(the_force_within_segments_is_a_parabola) {
     for (double s = 0; s <= 2; s += 0.08) {
-        char text[900];
-        snprintf(text, sizeof text,
-                 "gravity: [0, 0, 0]\nsimulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\n"
-                 "bodies:\n  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground},\n"
-                 "     rod: {length: 2, segments: %d, stiffness: [1e9, 1e9, 1e10, 1e6, 1e6, 1e6],\n"
-                 "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\nsensors:\n  - {body: a, at: [%.17g]}\n"
-                 "loads: [{body: a, along: [0, 2], force: [20, 0, 0], end_force: [60, 0, 0]}]\n",
-                 s < 1 ? 2 : 5, s);
-        check_near(at_start(text, "aSpn1FLx") * 1e3, 20 * (2 - s) + 10 * (4 - s * s), 0, 1e-3);
+        double force =
+            at_start("aSpn1FLx",
+                     "gravity: [0, 0, 0]\n" AT_REST ROD
+                     "segments: %d, stiffness: [1e9, 1e9, 1e10, 1e6, 1e6, 1e6]},\n" CLAMPED SENSOR
+                     "loads: [{body: a, along: [0, 2], force: [20, 0, 0], end_force: [60, 0, 0]}]\n",
+                     s < 1 ? 2 : 5, s);
+        check_near(force * 1e3, 20 * (2 - s) + 10 * (4 - s * s), 0, 1e-3);
     }
 }
 
 // A cantilever of 2 m under a small force at its tip: within its three segments displacement and rotation
 // follow F (L s²/2 - s³/6)/EI and F (L s - s²/2)/EI.
 TEST(the_motion_within_segments_is_that_of_a_bent_rod) {
+    static const char bent[] = "gravity: [0, 0, 0]\n" AT_REST ROD
+                               "segments: 3, stiffness: [1e9, 1e9, 1e10, 1e4, 1e4, 1e4]},\n" CLAMPED
+                               "loads:\n  - {body: a, at: tip, force: [0.1, 0, 0]}\n" SENSOR;
     const double force = 0.1, stiffness = 1e4, length = 2;
     for (double s = 0.1; s < length; s += 0.3) {
-        char text[800];
-        snprintf(text, sizeof text,
-                 "gravity: [0, 0, 0]\n"
-                 "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-                 "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: ground},\n"
-                 "     rod: {length: 2, segments: 3, stiffness: [1e9, 1e9, 1e10, 1e4, 1e4, 1e4],\n"
-                 "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
-                 "loads:\n  - {body: a, at: tip, force: [0.1, 0, 0]}\nsensors:\n  - {body: a, at: [%.17g]}\n",
-                 s);
         double rotation = force * (length * s - s * s / 2) / stiffness;
         double shift = force * (length * s * s / 2 - s * s * s / 6) / stiffness;
-        check_near(at_start(text, "aSpn1RDy") * BOUGH_DEGREE, rotation, 0, 1e-6 * force / stiffness);
-        check_near(at_start(text, "aSpn1TDx"), shift, 0, 5e-3 * force / stiffness); // h³F/12EI f(1-f)(1-2f)
+        check_near(at_start("aSpn1RDy", bent, s) * BOUGH_DEGREE, rotation, 0, 1e-6 * force / stiffness);
+        // h³F/12EI f(1-f)(1-2f)
+        check_near(at_start("aSpn1TDx", bent, s), shift, 0, 5e-3 * force / stiffness);
     }
 }
 
 // The tension at the root of a rod that rotates about x at 10 rad/s, of 10 kg/m from 1 to 3 m: ∫ μ Ω² r dr.
 static double rotor(int n, double at) {
-    char text[800];
-    snprintf(text, sizeof text,
-             "gravity: [0, 0, 0]\n"
-             "simulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-             "  - {name: hub, fidelity: rigid, mass: 5, inertia: [1, 1, 1],\n"
-             "     joint: {kind: revolute, axis: x, parent: ground, motion: {speed: 10 rad/s}}}\n"
-             "  - {name: a, fidelity: rod, joint: {kind: fixed, parent: hub, placement: [move z 1 m]},\n"
-             "     rod: {length: 2, segments: %d, stiffness: [1e9, 1e9, 1e10, 1e8, 1e8, 1e8],\n"
-             "           mass: [10, 0, 0, 0.1, 0.1, 0]}}\n"
-             "sensors:\n  - {body: a, at: [%.17g]}\n",
-             n, at);
-    return at_start(text, "aSpn1FLz");
+    return at_start("aSpn1FLz",
+                    "gravity: [0, 0, 0]\n" AT_REST
+                    "  - {name: hub, fidelity: rigid, mass: 5, inertia: [1, 1, 1],\n"
+                    "     joint: {kind: revolute, axis: x, parent: ground, motion: {speed: 10 rad/s}}}\n" ROD
+                    "segments: %d, stiffness: [1e9, 1e9, 1e10, 1e8, 1e8, 1e8]},\n"
+                    "    joint: {kind: fixed, parent: hub, placement: [move z 1 m]}}\n" SENSOR,
+                    n, at);
 }
 
 // A rigid blade pulls at its hub as a rod does, and hangs on it by its weight.
@@ -145,14 +133,9 @@ TEST(a_rigid_blade_has_root_loads) {
     static const char *const motion[] = {"bodies[hub].joint.motion={speed: 3 rad/s}",
                                          "bodies[hub].joint.motion={speed: 0}"};
     for (int k = 0; k < 2; k++) {
-        const char *const sets[] = {"aero=null",
-                                    "loads=null",
-                                    "bodies[hub].joint.angle=90 deg",
-                                    "bodies[hub].joint.speed=null",
-                                    "simulation.initial=equilibrium",
-                                    weight[k],
-                                    motion[k],
-                                    NULL};
+        const char *const *sets =
+            sets_of("aero=null", "loads=null", "bodies[hub].joint.angle=90 deg",
+                    "bodies[hub].joint.speed=null", "simulation.initial=equilibrium", weight[k], motion[k]);
         check_arena(arena);
         built b = built_from(arena, scene_build(arena, "tests/data/scenes/example-turbine.yaml", sets));
         double x = channel(&b, "RootFxb1"), y = channel(&b, "RootFyb1"), z = channel(&b, "RootFzb1");
@@ -165,8 +148,8 @@ TEST(a_rigid_blade_has_root_loads) {
 
 TEST(the_tension_of_a_rotor_is_the_integral) {
     double exact = 10 * 100 * (9 - 1) / 2.0 / 1e3;
-    check_near(rotor(2, 0), exact, 0,
-               1e-6); // lumped at the vertices' own centres: exact but for the stretch
+    // lumped at the vertices' own centres: exact but for the stretch
+    check_near(rotor(2, 0), exact, 0, 1e-6);
     check_near(rotor(9, 0), exact, 0, 1e-6);
     // and within segments
     for (double at = 0; at <= 2; at += 0.04)
@@ -176,8 +159,7 @@ TEST(the_tension_of_a_rotor_is_the_integral) {
 // A hinged chain whose tension is many times 12 EI/h²: the elastic catenary, from the force at its top down.
 TEST(a_cable_of_long_segments_hangs_in_a_catenary) {
     static const char text[] =
-        "gravity: [0, 0, -10]\nsimulation: {duration: 1 s, macro_step: 10 ms, initial: equilibrium}\nbodies:\n"
-        "  - {name: anchor, fidelity: rigid, mass: 1, inertia: [1, 1, 1],\n"
+        "gravity: [0, 0, -10]\n" AT_REST "  - {name: anchor, fidelity: rigid, mass: 1, inertia: [1, 1, 1],\n"
         "     joint: {kind: revolute, axis: y, parent: ground, placement: [rotate y 90 deg]}}\n"
         "  - {name: line, fidelity: rod, joint: {kind: fixed, parent: anchor},\n"
         "     rod: {length: 10, segments: 6, stiffness: [1e7, 1e7, 3e7, 1, 1, 100], mass: [10, 0, 0, 0.01, 0.01, 0]}}\n"
