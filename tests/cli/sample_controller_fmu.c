@@ -1,7 +1,7 @@
 // The library's law of variable speed as an FMU for tests: inputs generator speed and pitch, outputs torque,
 // pitch, and a pitch for each blade.
-#include "aero/control/controller.h"
 #include "apps/bough/model/fmi3.h"
+#include "tests/unit/nrel5mw_control.h"
 
 #include <stdlib.h>
 
@@ -13,24 +13,6 @@ typedef struct sample {
     double speed, pitch, time, time_input;
 } sample;
 
-// Of the NREL 5 MW turbine: the defaults of a scene.
-static const bough_controller_def nrel5mw = {.corner = 1.570796,
-                                             .cut_in = 70.16224,
-                                             .optimal_from = 91.21091,
-                                             .optimal_gain = 2.332287,
-                                             .rated_speed = 121.6805,
-                                             .rated_power = 5296610,
-                                             .slip = 0.1,
-                                             .most_torque = 47402.91,
-                                             .torque_rate = 15000,
-                                             .power_pitch = 0.01745329,
-                                             .reference_speed = 122.9096,
-                                             .proportional = 0.01882681,
-                                             .integral = 0.008068634,
-                                             .halving_pitch = 0.1099965,
-                                             .most_pitch = 1.570796,
-                                             .pitch_rate = 0.1396263};
-
 fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
                                           bool visible, bool logging, bool event_mode, bool early_return,
                                           const fmi3_reference *intermediate, size_t n_intermediate,
@@ -39,7 +21,7 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode;
     (void)early_return, (void)intermediate, (void)n_intermediate, (void)environment, (void)log, (void)update;
     sample *s = calloc(1, sizeof *s);
-    if (s) s->law = nrel5mw;
+    if (s) s->law = nrel5mw_control;
     return s;
 }
 

@@ -1,34 +1,12 @@
-#include "aero/control/controller.h"
-
 #include "tests/unit/check.h"
+#include "tests/unit/nrel5mw_control.h"
 
 static const double rpm = BOUGH_PI / 30, gear = 97, inertia = 43784725; // slow shaft [kg m²]
-
-// The values of the report.
-static bough_controller_def baseline(void) {
-    return (bough_controller_def){.corner = 1.570796,
-                                  .cut_in = 70.16224,
-                                  .optimal_from = 91.21091,
-                                  .optimal_gain = 2.332287,
-                                  .rated_speed = 121.6805,
-                                  .rated_power = 5296610,
-                                  .slip = 0.1,
-                                  .most_torque = 47402.91,
-                                  .torque_rate = 15000,
-                                  .power_pitch = 0.01745329,
-                                  .reference_speed = 122.9096,
-                                  .proportional = 0.01882681,
-                                  .integral = 0.008068634,
-                                  .halving_pitch = 0.1099965,
-                                  .least_pitch = 0,
-                                  .most_pitch = BOUGH_PI / 2,
-                                  .pitch_rate = 0.1396263};
-}
 
 // The report derives its gains from a damping ratio of 0.7 and 0.6 rad/s at rated, where a pitch of
 // 1 rad takes 25.52 MW: KP = 2 J Ω ζ ω/(N·25.52e6), KI = J Ω ω²/(N·25.52e6).
 TEST(gains_are_those_of_the_design) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     double speed = 12.1 * rpm, unit = inertia * speed / (gear * 25.52e6);
     check_near(d.proportional, 2 * 0.7 * 0.6 * unit, 1e-3, 0);
     check_near(d.integral, 0.36 * unit, 1e-3, 0);
@@ -39,7 +17,7 @@ TEST(gains_are_those_of_the_design) {
 
 // Torque of the regions and where they meet: the report's figure 7-1.
 TEST(torque_follows_the_regions) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     static const double table[][3] = {{500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
                                       {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
                                       {1300, 0, 38906.9}, {1100, 0.0175, 45980.8}, {1000, 0.2, 47402.9}};
@@ -60,7 +38,7 @@ TEST(torque_follows_the_regions) {
 TEST(torque_never_drives) {
     static const double pitches[] = {0, 0.018, 0.3, 1.57};
     for (int k = 0; k < 8; k++) {
-        bough_controller_def d = baseline();
+        bough_controller_def d = nrel5mw_control;
         if (k >= 4) d.cut_in = 0;
         double pitch = pitches[k % 4], before = 0;
         for (double w = -d.rated_speed; w < 1.3 * d.rated_speed; w += 0.01) {
@@ -75,7 +53,7 @@ TEST(torque_never_drives) {
 // From the synchronous speed the line of the slip goes both ways, to the most torque of either sign; GenModel
 // 1 of OpenFAST's ServoDyn.
 TEST(an_induction_generator_drives_below_its_synchronous_speed) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     const double most = 450, synchronous = 600 * rpm, slip = 0.03;
     d.motoring = true, d.optimal_gain = 0, d.cut_in = 0, d.optimal_from = 1e-3;
     d.above_rated = BOUGH_CONSTANT_TORQUE, d.slip = slip, d.most_torque = most, d.torque_rate = 1e9;
@@ -95,7 +73,7 @@ TEST(an_induction_generator_drives_below_its_synchronous_speed) {
 
 // A rotor that something else stops and turns back: the filter and the rate of the torque keep none.
 TEST(a_rotor_that_reverses_has_no_torque) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     bough_controller_state s = {0};
     bough_controller_advance(&d, 110, 0, 0.02, &s);
     assert_true(s.torque > 20000);
@@ -107,7 +85,7 @@ TEST(a_rotor_that_reverses_has_no_torque) {
 
 // Constant torque instead, and a line that is as good as vertical.
 TEST(torque_may_stay) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     d.above_rated = BOUGH_CONSTANT_TORQUE;
     double rated = d.rated_power / d.rated_speed;
     check_near(bough_controller_torque(&d, 1.5 * d.rated_speed, 0), rated, 1e-12, 0);
@@ -119,7 +97,7 @@ TEST(torque_may_stay) {
 }
 
 TEST(limits_hold) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     bough_controller_state s = {0};
     bough_controller_advance(&d, 90, 0.1, 0.02, &s);
     check_near(s.pitch, 0.1, 0, 0);
@@ -139,7 +117,7 @@ TEST(limits_hold) {
 // A rotor of that inertia whose power falls with the pitch as the report says comes back to the
 // reference speed after a gust, from either side.
 TEST(speed_is_regulated) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     const double step = 0.0125, rated = 5296610;
     for (int sign = -1; sign <= 1; sign += 2) {
         bough_controller_state s = {0};
@@ -161,7 +139,7 @@ TEST(speed_is_regulated) {
 
 TEST(senseless_constants_are_refused) {
     for (int i = 0; i < 6; i++) {
-        bough_controller_def d = baseline();
+        bough_controller_def d = nrel5mw_control;
         if (i == 4) d.cut_in = -1;
         if (i == 5) d.optimal_gain = -1;
         if (i == 0) d.slip = 0;
@@ -175,7 +153,7 @@ TEST(senseless_constants_are_refused) {
 
 // The line of a nearly vertical slip meets the parabola at its synchronous speed.
 TEST(slip_of_nearly_nothing_is_a_vertical_line) {
-    bough_controller_def d = baseline();
+    bough_controller_def d = nrel5mw_control;
     d.slip = 1e-7;
     d.optimal_from = 1e-3, d.cut_in = 0;
     check_ok(bough_controller_check(&d));
