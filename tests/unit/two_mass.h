@@ -1,9 +1,24 @@
-// The two-mass oscillator for tests: an exact run that must succeed.
+// The two-mass oscillator for tests: its runs, and an exact run that must succeed.
 #ifndef BOUGH_TESTS_UNIT_TWO_MASS_H
 #define BOUGH_TESTS_UNIT_TWO_MASS_H
 
 #include "tests/unit/check.h"
 #include "tests/verification/two_mass.h"
+
+static inline bough_master_def two_mass_def(const char *scheme, double macro_step, double duration) {
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = scheme;
+    def.macro_step = macro_step;
+    def.duration = duration;
+    return def;
+}
+
+// Mass 1 without a spring of its own and 1e-4 of mass 2: 59 times lighter than what it moves.
+static inline bough_two_mass two_mass_light(void) {
+    bough_two_mass m = bough_two_mass_default();
+    m.s1 = (bough_spring_mass){1e-4, 0, 0};
+    return m;
+}
 
 static inline double two_mass_error(bough_two_mass *m) {
     double worst;

@@ -62,8 +62,7 @@ TEST(sums_are_those_by_hand) {
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
-    bough_lifetime l;
-    l = bough_lifetime_take(arena, &set);
+    bough_lifetime l = bough_lifetime_take(arena, &set);
     const double amplitude[3] = {1, 3, 5}, mean[3] = {0, 10, 0};
     for (int i = 0; i < 3; i++) {
         bough_case_result r = sine(arena, &set, mean[i], amplitude[i], 20);
@@ -98,8 +97,7 @@ TEST(what_is_missing_is_reported) {
     bough_case cases[CASES];
     bough_load_group group[4];
     bough_study set = made(cases, group);
-    bough_lifetime l;
-    l = bough_lifetime_take(arena, &set);
+    bough_lifetime l = bough_lifetime_take(arena, &set);
     bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
     failed.outcome = bough_fail(BOUGH_FAILED, "broke");
     missing.done = false;

@@ -2,11 +2,8 @@
 
 static double error_with(bough_integrator_options integrator) {
     bough_two_mass m = bough_two_mass_default();
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = "monolithic";
+    bough_master_def def = two_mass_def("monolithic", .1, 10);
     def.scheme.integrator = integrator;
-    def.macro_step = .1;
-    def.duration = 10;
     check_ok(bough_two_mass_build(check_memory(), &m, def));
     double error = two_mass_error(&m);
     bough_coupling_report report = bough_monitor_report(m.master->monitor, m.master->coupling);

@@ -3,14 +3,6 @@
 #include "tests/unit/contract.h"
 #include "tests/unit/two_mass.h"
 
-static bough_master_def definition(const char *scheme, double macro_step) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = scheme;
-    def.macro_step = macro_step;
-    def.duration = 10;
-    return def;
-}
-
 static double error_of(bough_two_mass m, bough_master_def def) {
     check_ok(bough_two_mass_build(check_memory(), &m, def));
     bough_two_mass_history(&m);
@@ -37,7 +29,7 @@ TEST(exact_solution_is_the_published_one) {
 
 TEST(oscillators_fulfil_the_contract) {
     bough_two_mass m = bough_two_mass_default();
-    bough_two_mass_build(check_memory(), &m, definition("frozen", .1));
+    bough_two_mass_build(check_memory(), &m, two_mass_def("frozen", .1, 10));
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
     for (int i = 0; i < 2; i++) {
         contract_point at = {.t = .5, .state = y, .input = u, .tolerance = 1e-8};
@@ -53,12 +45,13 @@ TEST(errors_and_orders_of_polynomials) {
     static const double sequential[3][3] = {
         {5.98e-2, 2.51e-2, 1.23e-2}, {6.31e-3, 1.57e-3, 3.91e-4}, {1.80e-3, 2.22e-4, 2.76e-5}};
     for (int order = 0; order < 3; order++) {
-        bough_master_def at_once = definition("polynomial-at-once", 0), def = definition("polynomial", 0);
+        bough_master_def at_once = two_mass_def("polynomial-at-once", 0, 10),
+                         def = two_mass_def("polynomial", 0, 10);
         at_once.scheme.order = def.scheme.order = order;
         check_errors(at_once, parallel[order], .01);
         check_errors(def, sequential[order], .01);
     }
-    check_errors(definition("frozen", 0), parallel[0], .01);
+    check_errors(two_mass_def("frozen", 0, 10), parallel[0], .01);
 }
 
 // Whether 3000 s stay within twice the start.
@@ -85,7 +78,7 @@ static void check_limit(bough_master_def def, double limit) {
 
 TEST(stability_limits) {
     for (int k = 0; k < 3; k++) {
-        bough_master_def def = definition(polynomial_limits[k].scheme, 0);
+        bough_master_def def = two_mass_def(polynomial_limits[k].scheme, 0, 10);
         for (def.scheme.order = 0; def.scheme.order < 3; def.scheme.order++) {
             check_limit(def, polynomial_limits[k].limit[def.scheme.order]);
         }
@@ -96,7 +89,7 @@ TEST(stability_limits) {
 TEST(ramp_is_of_order_three_on_a_heavy_body) {
     double error[3];
     for (int i = 0; i < 3; i++) {
-        error[i] = error_of(bough_two_mass_default(), definition("ramp", .04 / (1 << i)));
+        error[i] = error_of(bough_two_mass_default(), two_mass_def("ramp", .04 / (1 << i), 10));
     }
     check_near(log2(error[0] / error[1]), 3, 0, .25);
     check_near(log2(error[1] / error[2]), 3, 0, .25);
@@ -104,19 +97,12 @@ TEST(ramp_is_of_order_three_on_a_heavy_body) {
 }
 
 TEST(ramp_is_stable_beyond_every_explicit_limit) {
-    for (double h = .02; h < .6; h *= 1.3) assert_true(stable(definition("ramp", h)));
-}
-
-// Mass 1 without a spring of its own and 1e-4 of mass 2: 59 times lighter than what it moves.
-static bough_two_mass light_case(void) {
-    bough_two_mass m = bough_two_mass_default();
-    m.s1 = (bough_spring_mass){1e-4, 0, 0};
-    return m;
+    for (double h = .02; h < .6; h *= 1.3) assert_true(stable(two_mass_def("ramp", h, 10)));
 }
 
 TEST(ramp_takes_a_light_interface_body) {
-    bough_two_mass m = light_case();
-    check_ok(bough_two_mass_build(check_memory(), &m, definition("ramp", .02)));
+    bough_two_mass m = two_mass_light();
+    check_ok(bough_two_mass_build(check_memory(), &m, two_mass_def("ramp", .02, 10)));
     // its damped first step errs at first order; without them the start rings on (error 3.3)
     check_near(0, two_mass_error(&m), 0, .1);
     check_near(bough_scheme_reported(m.master->coupling).interface_ratio, 59.6, .01, 0);
@@ -137,7 +123,7 @@ TEST(ramp_refuses_where_it_is_unstable) {
             if (k == 0) m.s2 = (bough_spring_mass){cases[k].mass[1], 0, 0};
             m.k = cases[k].stiffness;
             m.c = cases[k].damping;
-            bough_master_def def = definition("ramp", .02);
+            bough_master_def def = two_mass_def("ramp", .02, 10);
             def.scheme.theta = named ? .5 : 0;
             bough_status status = bough_two_mass_build(check_memory(), &m, def);
             assert_int_equal(status.code, named ? BOUGH_OK : BOUGH_INVALID);
@@ -152,8 +138,8 @@ TEST(ramp_refuses_where_it_is_unstable) {
 }
 
 TEST(unstable_run_ends_with_a_diagnosis) {
-    bough_two_mass m = light_case();
-    bough_master_def def = definition("gauss-seidel", .02);
+    bough_two_mass m = two_mass_light();
+    bough_master_def def = two_mass_def("gauss-seidel", .02, 10);
     bough_status status = bough_two_mass_build(check_memory(), &m, def);
     while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
     check_fails(status, BOUGH_FAILED, "mass2");
@@ -162,7 +148,7 @@ TEST(unstable_run_ends_with_a_diagnosis) {
 }
 
 static bough_master_def iterated(bough_acceleration accelerator, double macro_step) {
-    bough_master_def def = definition("iterated", macro_step);
+    bough_master_def def = two_mass_def("iterated", macro_step, 10);
     def.scheme.accelerator = accelerator;
     def.scheme.exchange = BOUGH_EXCHANGE_END_VALUES;
     def.scheme.tolerance = 1e-11;
@@ -253,7 +239,7 @@ TEST(stiff_ends_want_waveforms) {
 
 TEST(iterated_takes_a_light_interface_body) {
     for (int order = 0; order < 2; order++) {
-        bough_two_mass m = light_case();
+        bough_two_mass m = two_mass_light();
         bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, order == 0 ? .02 : .0025);
         def.scheme.order = order;
         check_ok(bough_two_mass_build(check_memory(), &m, def));
@@ -267,7 +253,7 @@ TEST(iterated_takes_a_light_interface_body) {
 // A force linear in time on a light body at 316 rad/s: stable to 3.46 of its radians.
 TEST(converged_but_unstable_is_warned_of) {
     for (int order = 1; order < 3; order++) {
-        bough_two_mass m = light_case();
+        bough_two_mass m = two_mass_light();
         bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, .02);
         def.scheme.order = order;
         check_ok(bough_two_mass_build(check_memory(), &m, def));
@@ -276,7 +262,7 @@ TEST(converged_but_unstable_is_warned_of) {
 }
 
 TEST(iteration_that_diverges_says_so) {
-    bough_two_mass m = light_case();
+    bough_two_mass m = two_mass_light();
     bough_two_mass_build(check_memory(), &m, iterated(BOUGH_ACCELERATE_NONE, .02));
     bough_status status = bough_step(m.master);
     check_fails(status, BOUGH_FAILED, "mass2 and mass1 not converged at 0.02 s");
@@ -319,7 +305,7 @@ TEST(added_mass_is_carried_or_diagnosed) {
     static const double ratio[] = {.01, .1, .5, 1, 3, 10, 100, 1000};
     for (size_t k = 0; k < 8 * (sizeof ways / sizeof *ways); k++) {
         bough_two_mass m = carrier(ratio[k % 8]);
-        bough_master_def def = definition(ways[k / 8].scheme, .01);
+        bough_master_def def = two_mass_def(ways[k / 8].scheme, .01, 10);
         def.scheme.accelerator = ways[k / 8].accelerator;
         def.scheme.exchange = ways[k / 8].exchange;
         def.scheme.tolerance = 1e-9;

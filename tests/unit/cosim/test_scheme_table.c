@@ -3,14 +3,6 @@
 #include "tests/unit/scene_text.h"
 #include "tests/unit/two_mass.h"
 
-static bough_master_def definition(double macro_step) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = "toy";
-    def.macro_step = macro_step;
-    def.duration = 10;
-    return def;
-}
-
 TEST(the_table_lists_it_once) {
     int found = 0, n = 0;
     for (const char *name; (name = bough_scheme_name(n)) != NULL; n++) found += !strcmp(name, "toy");
@@ -49,7 +41,7 @@ TEST(it_is_stepped_at_its_order) {
     double error[2];
     for (int k = 0; k < 2; k++) {
         bough_two_mass m = bough_two_mass_default();
-        check_ok(bough_two_mass_build(check_memory(), &m, definition(.02 / (k + 1))));
+        check_ok(bough_two_mass_build(check_memory(), &m, two_mass_def("toy", .02 / (k + 1), 10)));
         bough_two_mass_history(&m);
         error[k] = two_mass_error(&m);
         assert_string_equal(m.master->verdict, "");
@@ -59,7 +51,7 @@ TEST(it_is_stepped_at_its_order) {
 
 TEST(it_is_judged_and_diagnosed) {
     bough_two_mass m = bough_two_mass_default();
-    bough_master_def def = definition(.5);
+    bough_master_def def = two_mass_def("toy", .5, 10);
     def.duration = 1000;
     check_ok(bough_two_mass_build(check_memory(), &m, def));
     assert_non_null(strstr(m.master->verdict, "scheme toy at a macro step of 0.5 s is unstable"));

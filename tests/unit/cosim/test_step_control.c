@@ -2,11 +2,8 @@
 #include "tests/unit/two_mass.h"
 
 static bough_master_def definition(const char *scheme, double macro_step, double tolerance) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = scheme;
+    bough_master_def def = two_mass_def(scheme, macro_step, 4);
     def.scheme.tolerance = 1e-11;
-    def.macro_step = macro_step;
-    def.duration = 4;
     def.control = (bough_step_control_def){tolerance, macro_step / 8};
     return def;
 }

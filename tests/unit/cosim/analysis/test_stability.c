@@ -4,11 +4,7 @@
 #include "tests/unit/two_mass.h"
 
 static void build(bough_two_mass *m, const char *scheme, double macro_step) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = scheme;
-    def.macro_step = macro_step;
-    def.duration = 10;
-    check_ok(bough_two_mass_build(check_memory(), m, def));
+    check_ok(bough_two_mass_build(check_memory(), m, two_mass_def(scheme, macro_step, 10)));
 }
 
 static bough_stability judge(const bough_two_mass *m, const bough_scheme_options *options, double h) {
@@ -87,11 +83,8 @@ TEST(limits_depend_on_the_cut_and_the_masses) {
                                 .c = c[1],
                                 .y0 = {1, 0, .5, -1},
                                 .cut = limits[k].cut};
-            bough_master_def def = bough_master_def_default();
-            def.scheme.name = limits[k].scheme;
+            bough_master_def def = two_mass_def(limits[k].scheme, from, 10);
             def.scheme.order = order;
-            def.macro_step = from;
-            def.duration = 10;
             check_ok(bough_two_mass_build(check_memory(), &m, def));
             double limit = limits[k].limit[order];
             double to = limit > 0 ? .98 * limit : systems[limits[k].system].to;
@@ -113,17 +106,10 @@ TEST(growth_and_frequency_are_those_of_the_slowest_mode) {
     assert_false(bough_stability_grows(&slowest));
 }
 
-// Mass 1 without a spring of its own and 1e-4 of mass 2.
-static bough_two_mass light_case(void) {
-    bough_two_mass m = bough_two_mass_default();
-    m.s1 = (bough_spring_mass){1e-4, 0, 0};
-    return m;
-}
-
 TEST(ramp_holds_on_a_light_interface_body) {
     bough_scheme_options options = bough_scheme_options_default();
     options.name = "ramp";
-    bough_two_mass m = light_case();
+    bough_two_mass m = two_mass_light();
     build(&m, "ramp", .02);
     for (int k = 1; k <= 16; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
     options.name = "gauss-seidel";
@@ -141,7 +127,7 @@ TEST(ramp_holds_on_a_light_interface_body) {
 // the two masses show it.
 TEST(iterated_is_judged_as_if_converged) {
     bough_scheme_options options = bough_scheme_options_default();
-    bough_two_mass m = light_case();
+    bough_two_mass m = two_mass_light();
     build(&m, "ramp", .02);
     options.name = "iterated";
     options.accelerator = BOUGH_ACCELERATE_NONE;

@@ -13,10 +13,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
 
 // Runs to the failure.
 static bough_status run(bough_two_mass *m, double macro_step, double start, bool judged) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = "gauss-seidel";
-    def.macro_step = macro_step;
-    def.duration = 1000;
+    bough_master_def def = two_mass_def("gauss-seidel", macro_step, 1000);
     *m = bough_two_mass_default();
     m->y0[0] = start;
     bough_status status = bough_two_mass_build(check_memory(), m, def);

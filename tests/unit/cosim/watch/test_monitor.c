@@ -6,10 +6,7 @@
 
 static bough_status run(bough_two_mass m, const char *scheme, double macro_step, double duration,
                         double *stopped) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = scheme;
-    def.macro_step = macro_step;
-    def.duration = duration;
+    bough_master_def def = two_mass_def(scheme, macro_step, duration);
     bough_status status = bough_two_mass_build(check_memory(), &m, def);
     while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
     *stopped = m.master->time;
@@ -68,11 +65,8 @@ TEST(what_is_not_finite_is_reported) {
 
 // The fate of a run of 20 s: −1 stopped, else its largest motion relative to the start.
 static double fate(bough_two_mass m, const char *scheme, bough_exchange exchange, double macro_step) {
-    bough_master_def def = bough_master_def_default();
-    def.scheme.name = scheme;
+    bough_master_def def = two_mass_def(scheme, macro_step, 20);
     def.scheme.exchange = exchange;
-    def.macro_step = macro_step;
-    def.duration = 20;
     bough_status status = bough_two_mass_build(check_memory(), &m, def);
     double largest = 0;
     while (bough_is_ok(&status) && !bough_master_done(m.master)) {
@@ -115,11 +109,7 @@ TEST(no_scheme_blows_up_in_silence) {
 TEST(unknown_members_do_not_blow_up_in_silence) {
     for (double h = .004; h < .2; h *= 40) {
         bough_two_mass m = lightly_damped();
-        bough_master_def def = bough_master_def_default();
-        def.scheme.name = "gauss-seidel";
-        def.macro_step = h;
-        def.duration = 100;
-        bough_status status = bough_two_mass_build(check_memory(), &m, def);
+        bough_status status = bough_two_mass_build(check_memory(), &m, two_mass_def("gauss-seidel", h, 100));
         m.master->assembly->opaque = true;
         double largest = 0;
         while (bough_is_ok(&status) && !bough_master_done(m.master)) {
