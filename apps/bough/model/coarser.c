@@ -106,13 +106,22 @@ static bool has_short_pulses(const bough_scene *scene) {
     return found;
 }
 
+static int least_of(const bough_scene *scene, int body) {
+    return bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
+}
+
+// Modal bodies get pieces of equal length; unequal ones of run and companion can err alike.
+static int finer_segments(const bough_scene *scene, int body) {
+    int n = finer_number(scene->body[body].rod.n_segment), pieces = least_of(scene, body);
+    return (n + pieces - 1) / pieces * pieces;
+}
+
 // For the rod's own sake.
 static int own_segments(const bough_scene *scene, int body) {
-    int n = scene->body[body].rod.n_segment;
-    if (has_short_pulses(scene)) return finer_number(n);
+    int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
-    if (blade ? has_modal_blades(scene) : is_modal(scene, body)) return finer_number(n);
-    int least = blade ? least_of_blades(scene) : least_segments(scene, body);
+    bool modal = blade ? has_modal_blades(scene) : is_modal(scene, body);
+    if (modal || has_short_pulses(scene)) return finer_segments(scene, body);
     return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
@@ -136,8 +145,8 @@ static void change_segments(const bough_scene *scene, bough_scene *to) {
     int most = BESIDE * most_refined(scene);
     for (int i = 0; i < scene->n_body; i++) {
         if (!scene->body[i].rod.node) continue;
-        int n = scene->body[i].rod.n_segment;
-        to->body[i].rod.n_segment = n <= most ? finer_number(n) : own_segments(scene, i);
+        bool beside = scene->body[i].rod.n_segment <= most;
+        to->body[i].rod.n_segment = beside ? finer_segments(scene, i) : own_segments(scene, i);
     }
 }
 

@@ -90,6 +90,7 @@ TEST(the_error_is_a_part_of_the_difference) {
         {runup, {SEGMENTS(8), "simulation.coupling={scheme: ramp}"}, 16, 1},
         {runup, {SEGMENTS(1), "simulation.coupling={scheme: ramp}"}, 8, 1},
         {runup, {"bodies[3-5].fidelity=modal", MONOLITHIC}, 48, 1},
+        {runup, {"bodies[3-5].fidelity=segmented-modal", "bodies[3-5].modal={pieces: 5}"}, 50, 1},
         {runup, {SEGMENTS(16), "simulation.coupling={scheme: ramp}"}, 10, 0.5},
         {runup, {SEGMENTS(16), "simulation.coupling={scheme: iterated}"}, 10, 1},
         {runup, {SEGMENTS(16), "simulation.coupling={scheme: frozen}"}, 10, 1},
