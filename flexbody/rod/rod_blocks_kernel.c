@@ -1,7 +1,8 @@
 // The tangents of segments and vertices put into blocks, for factors, statics and eigenvalues. Tangents have
 // eight segments side by side, a block has its entries together: for eight vertices at a time, the entries of
 // a row are gathered in a tile, one vertex in each lane, and the tile is transposed.
-#include "flexbody/rod/rod_kernels.h"
+#include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
 // Vertices v, v + 1 … in lanes, of which begin..end − 1 are moving ones.

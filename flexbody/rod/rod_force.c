@@ -1,5 +1,4 @@
 // Wrenches and stresses of a rod.
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
 #include <math.h>

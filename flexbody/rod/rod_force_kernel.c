@@ -1,5 +1,4 @@
 // Right-hand side of the rod: gather, segment forces, vertex balances.
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
 #include <string.h>

@@ -6,6 +6,9 @@
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_elastic.h"
 
+// The name of bough_rod_NAME in a file of kernels (core/base/level.h).
+#define AT(name) BOUGH_AT_LEVEL(bough_rod_##name)
+
 // How many of n vertices fill whole vectors of a kernel's width.
 BOUGH_INLINE int whole_vectors(int n, int width) { return n - n % width; }
 

@@ -2,7 +2,6 @@
 // segments equally: theory (105).
 #include "flexbody/rod/rod_load.h"
 
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // Loads along the segments: the strains that they cause, and their axes.
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_load.h"
 
 // Row by row D q = D₀ (mean) + D₁ (slope).
 void AT(line_strain)(const bough_rod_model *m, const double *line, double *along) {

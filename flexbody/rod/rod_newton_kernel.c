@@ -1,6 +1,6 @@
 // Newton's matrix of the rod: elimination of the kinematic rows, factors, solution.
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)

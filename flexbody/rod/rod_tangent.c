@@ -1,7 +1,6 @@
 // Memory of a linearisation, and that about a steady motion.
 #include "flexbody/rod/rod_tangent.h"
 
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
 #include <string.h>

@@ -58,6 +58,7 @@ typedef struct bough_rod_eight {
 
 // Puts them and the tangents by configuration into blocks. To be called in the order of segments.
 void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight);
+BOUGH_DECLARE_LEVELS(bough_rod_form_blocks);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);

@@ -1,7 +1,7 @@
 // Linearisation of the rod: exact tangents of the forces of eight segments at a time, side by side in vector
 // lanes, and of the vertices' balances.
-#include "flexbody/rod/rod_kernels.h"
 #include "flexbody/rod/rod_lanes.h"
+#include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
 #include <string.h>

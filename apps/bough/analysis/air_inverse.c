@@ -1,8 +1,7 @@
-// theory (77, 109). Equal blades are in blade_inverse.h, and all other states border them; without equal
+// theory (77, 109). Equal blades are in blade_inverse.c, and all other states border them; without equal
 // blades all states are others.
 #include "apps/bough/analysis/air_inverse.h"
 
-#include "apps/bough/analysis/blade_inverse.h"
 #include "core/base/linalg.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // theory (116). The blades' states are in harmonics wherever they are not said to be of blade after blade.
-#include "apps/bough/analysis/blade_inverse.h"
+#include "apps/bough/analysis/air_inverse.h"
 
 #include "core/base/base.h"
 #include "core/base/linalg.h"

@@ -1,6 +1,5 @@
 // The inverse of a rotor of equal blades in blocks, beside the equations that it solves.
 #include "apps/bough/analysis/air_inverse.h"
-#include "apps/bough/analysis/blade_inverse.h"
 #include "apps/bough/analysis/vibration.h"
 #include "tests/unit/built_scene.h"
 
