@@ -78,13 +78,13 @@ static double work_left(const bough_finer *f, const bough_master *run, double wo
 }
 
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
-static double most_steps(const bough_finer *f, const bough_master *run, double work) {
+static int most_steps(const bough_finer *f, const bough_master *run, double work) {
     const bough_simulation *own = f->other.simulation;
     const bough_scene_solver *solver = &own->scene->simulation.master;
-    double most = solver->most_steps;
+    int most = solver->most_steps;
     if (solver->solver != BOUGH_ROSENBROCK || own->master->time > f->from) return most;
     double allowed = work_left(f, run, work, little_at_first) / bough_other_run_work_of_step(&f->other);
-    return floor(fmin(most, fmax(least_steps, allowed)));
+    return (int)fmin(most, fmax(least_steps, allowed));
 }
 
 // From a time at which both have new samples of the air, at most `reach` before the jump.
@@ -103,8 +103,8 @@ void bough_finer_go_on(bough_finer *f, const bough_master *run) {
 
 // Whether it has failed by more than the most steps, and the run passes over the same vibrations: it takes
 // less than a quarter of the steps, of which a hundredth of its tolerance needs a few times as many.
-static bool gave_up(const bough_status *status, double most, long steps, long by_run) {
-    return status->code == BOUGH_FAILED && steps >= floor(most / 5) && 4 * by_run < most;
+static bool gave_up(const bough_status *status, int most, long steps, long by_run) {
+    return status->code == BOUGH_FAILED && steps >= most / 5 && 4 * by_run < most;
 }
 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
@@ -113,8 +113,8 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     bool ends = run->master->time > f->until || work_left(f, run->master, work, little) < 0;
     if (!f->follows || ends) return f->follows = false;
     long before = steps_of(own), by_run = steps_of(run) - f->run_steps;
-    double most = most_steps(f, run->master, work);
-    bough_other_run_limit(&f->other, (int)most);
+    int most = most_steps(f, run->master, work);
+    bough_other_run_limit(&f->other, most);
     f->run_steps += by_run;
     f->work -= bough_simulation_work(own);
     while (bough_is_ok(&status) && own->master->time < run->master->time)
