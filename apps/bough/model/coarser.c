@@ -116,7 +116,7 @@ static int finer_segments(const bough_scene *scene, int body) {
     return (n + pieces - 1) / pieces * pieces;
 }
 
-// For the rod's own sake.
+// What a rod gets whatever the others have.
 static int own_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
@@ -125,7 +125,7 @@ static int own_segments(const bough_scene *scene, int body) {
     return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
-// Most segments of a rod that gets more of them; 0: none does.
+// The largest number of segments among the rods that get more; 0: none does.
 static int most_refined(const bough_scene *scene) {
     int most = 0;
     for (int i = 0; i < scene->n_body; i++) {

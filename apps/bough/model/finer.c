@@ -71,7 +71,7 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
-// What its work may still be, with `more` beyond a tenth; all at time 0.
+// The work that it may still take, a tenth of all and `more`; unlimited at time 0.
 static double work_left(const bough_finer *f, const bough_master *run, double work, double more) {
     double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
     return most_work * whole + more - f->work;
