@@ -123,12 +123,19 @@ static const double least_ratio_of_force = 0.4;
 // that of the samples, and at half the sampling rate the error is no multiple of the run's.
 static const double most_missed = 0.1;
 static const double fluttering = 0.3; // with a larger error the air feeds the vibrations
+static const double alike = 20;       // at half the rate errors of order 2 are four times as large
 
 static double missed_air(const bough_simulation *s) {
     double missed = 0;
     for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
         missed = fmax(missed, bough_aero_link_missed(s->aero, b));
     return missed;
+}
+
+// Whether vibrations grow in the companion alone.
+static bool flutters(double run, double companion) {
+    double most = fmax(fmin(alike * run, fluttering), most_missed);
+    return run <= most_missed && companion > most;
 }
 
 // 1/Q of a channel. A sampled channel that the companion holds one sample longer differs by the change in
@@ -317,7 +324,7 @@ static void compare(bough_companion *c) {
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
     double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
-    c->flutters = c->flutters || (resolved && missed_air(c->coarser.simulation) > fluttering);
+    c->flutters = c->flutters || flutters(missed_air(c->run), missed_air(c->coarser.simulation));
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
