@@ -205,6 +205,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_run_record_at(run, (bough_run_record){interval, .sample = sample, .self = r});
     run->beside = r->study->is.parallel; // each on one thread
     run->stop = r->drive->stop;
+    run->steps_together = !run->side_by_side; // each step is counted beside that of the companion
     run->progress = &r->drive->progress;
     bough_run_all(run);
     assert(!r->series || !bough_is_ok(&run->outcome) || r->series->filled == r->series->n_row);

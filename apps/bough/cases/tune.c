@@ -108,6 +108,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     scene->simulation.error_estimate = m->estimate ? BOUGH_SCENE_COMPANION : BOUGH_SCENE_NO_ESTIMATE;
     BOUGH_TRY(bough_run_create(arena, scene, &run));
     run.stop = o->stop;
+    run.steps_together = true;
     run.beside = true;
     bough_run_all(&run);
     if (!bough_is_ok(&run.outcome)) return run.outcome;

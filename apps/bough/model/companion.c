@@ -52,6 +52,8 @@ static void expect_jumps(bough_companion *c) {
 
 static bough_status build(bough_arena *arena, bough_companion *c) {
     BOUGH_TRY(bough_other_run_build(arena, c->run, BOUGH_COARSER_ALL, &c->coarser));
+    for (int k = 0; k < BOUGH_COMPANION_ROWS; k++)
+        c->row[k].value = bough_arena_doubles(arena, (size_t)c->channels->count + 1);
     BOUGH_TRY(bough_finer_build(arena, c->run, &c->finer));
     const bough_scene *scene = c->run->scene, *other = c->coarser.simulation->scene;
     c->ratio = fmax(bough_coarser_ratio(scene, other), bough_coarser_air_ratio(scene, other));
@@ -73,7 +75,6 @@ static void widen(int n, const double *value, double *low, double *high) {
 static void sample(bough_companion *c) {
     bough_simulation_update(c->run);
     bough_channels_sample(c->channels, c->run->master->time, c->value);
-    if (!c->sampled) bough_other_run_sample(&c->coarser);
     widen(c->channels->count, c->value, c->low, c->high);
     widen(c->channels->count, c->coarser.value, c->other_low, c->other_high);
 }
@@ -88,8 +89,10 @@ static bool counts_now(const bough_companion *c, const bough_simulation *of) {
 
 static bool alive(const bough_companion *c) { return c->coarser.simulation && !c->reason[0]; }
 
+static const bough_companion_row *last(const bough_companion *c) { return &c->row[c->n_row - 1]; }
+
 bool bough_companion_due(const bough_companion *c) {
-    return alive(c) && c->coarser.simulation->master->time <= c->run->master->time &&
+    return alive(c) && bough_is_ok(&c->status) && last(c)->time <= c->run->master->time &&
            !bough_master_done(c->coarser.simulation->master);
 }
 
@@ -100,13 +103,48 @@ static bool meets_run(const bough_companion *c) {
     return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
 }
 
-void bough_companion_step(bough_companion *c) {
-    do {
-        c->status = bough_other_run_step(&c->coarser, c->run);
-    } while (bough_is_ok(&c->status) && !meets_run(c));
-    // its channels here, beside the run's step
-    c->sampled = bough_is_ok(&c->status) && counts_now(c, c->coarser.simulation);
-    if (c->sampled) bough_other_run_sample(&c->coarser);
+static double missed_air(const bough_simulation *s) {
+    double missed = 0;
+    for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
+        missed = fmax(missed, bough_aero_link_missed(s->aero, b));
+    return missed;
+}
+
+static void take_row(bough_companion *c) {
+    bough_simulation *s = c->coarser.simulation;
+    bough_companion_row *row = &c->row[c->n_row++];
+    row->time = s->master->time;
+    row->sampled = bough_master_sampled(s->master);
+    row->missed_air = missed_air(s);
+    row->work = bough_simulation_work(s);
+    c->coarser.value = row->value;
+    if (counts_now(c, s)) bough_other_run_sample(&c->coarser);
+}
+
+enum { MANY = 8 }; // steps of the run, and corners among them
+
+static bool has_equal_steps(const bough_companion *c) {
+    return c->run->scene->aero.node == NULL &&
+           c->coarser.simulation->master->macro_step == c->run->master->macro_step;
+}
+
+// Whether a comparison may yet split the steps of the companion: see split_steps.
+static bool may_split(const bough_companion *c) {
+    bool may = c->run->master->n_event >= MANY || bough_coarser_is_loose(c->run->scene) || has_equal_steps(c);
+    return may && !c->coarser.simulation->master->split;
+}
+
+void bough_companion_step(bough_companion *c, bool ahead) {
+    const bough_master *m = c->coarser.simulation->master;
+    bool alone = c->run->scene->n_input == 0 && !may_split(c); // its steps need nothing of the run
+    int most = ahead && alone ? BOUGH_COMPANION_ROWS : 1;
+    c->n_row = c->present = 0;
+    while (c->n_row < most && bough_is_ok(&c->status) && !bough_master_done(m)) {
+        do {
+            c->status = bough_other_run_step(&c->coarser, c->run);
+        } while (bough_is_ok(&c->status) && !meets_run(c));
+        if (bough_is_ok(&c->status)) take_row(c);
+    }
 }
 
 // -- comparing ------------------------------------------------------------------------------------
@@ -123,18 +161,12 @@ static const double least_ratio_of_force = 0.4;
 // that of the samples, and at half the sampling rate the error is no multiple of the run's.
 static const double most_missed = 0.1;
 static const double fluttering = 0.3; // with a larger error the air feeds the vibrations
-static const double alike = 20;       // at half the rate errors of order 2 are four times as large
-
-static double missed_air(const bough_simulation *s) {
-    double missed = 0;
-    for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
-        missed = fmax(missed, bough_aero_link_missed(s->aero, b));
-    return missed;
-}
+static const double far_more =
+    20; // than the run's: at half the rate errors of order 2 are four times as large
 
 // Whether vibrations grow in the companion alone.
 static bool flutters(double run, double companion) {
-    double most = fmax(fmin(alike * run, fluttering), most_missed);
+    double most = fmax(fmin(far_more * run, fluttering), most_missed);
     return run <= most_missed && companion > most;
 }
 
@@ -181,9 +213,9 @@ static bool is_large(const bough_companion *c, int i, double error) {
 // Vibrations that are faster than the steps decay in run and companion and leave no difference, and those
 // that are faster than the samples of the air are aliased. The finer solution resolves them, and goes on
 // while a difference grows.
-static void compare_finer(bough_companion *c) {
+static void compare_finer(bough_companion *c, double work) {
     bough_finer *f = &c->finer;
-    if (!bough_finer_advance(f, c->run, bough_companion_work(c))) return;
+    if (!bough_finer_advance(f, c->run, work)) return;
     bool held = !bough_master_sampled(c->run->master), grows = false;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
@@ -221,7 +253,7 @@ static void record(bough_companion *c, double error) {
     if (r->taken++ > 0 && error <= row[BOUGH_RECORD_ERROR]) return;
     row[BOUGH_RECORD_TIME] = c->run->master->time;
     row[BOUGH_RECORD_ERROR] = error;
-    row[BOUGH_RECORD_HELD] = !bough_master_sampled(c->coarser.simulation->master);
+    row[BOUGH_RECORD_HELD] = !c->row[c->present].sampled;
     memcpy(row + BOUGH_RECORD_RUN, c->value, n * sizeof *row);
     memcpy(row + BOUGH_RECORD_RUN + n, c->coarser.value, n * sizeof *row);
 }
@@ -242,7 +274,6 @@ static double reach(const bough_companion *c) {
     return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
-enum { MANY = 8 };                   // steps of the run, and corners among them
 enum { SPACING = 3 };                // macro steps from corner to corner, the largest mean of close ones
 enum { COUNTED = 32 };               // macro steps after which the counts begin again
 static const double few_steps = 1.5; // of the integrator in each step of the run
@@ -279,15 +310,14 @@ static bough_run_counts counts_since(const bough_run_counts *now, const bough_ru
 // then equal, and the companion takes two steps for each unless the integrators take short steps anyway.
 static void split_steps(bough_companion *c) {
     const bough_scene *scene = c->run->scene;
-    bough_master *other = c->coarser.simulation->master;
     count_corners(c);
     bough_run_counts now = counts_of(c), n = counts_since(&now, &c->counted);
     // the companion of a loose tolerance has half the run's macro steps: several corners are in each of them
     bool close = bough_coarser_is_loose(scene) ? n.advances >= SPACING * n.macro_steps
                                                : n.corners >= MANY && SPACING * n.corners >= n.macro_steps;
-    bool same = scene->aero.node == NULL && other->macro_step == c->run->master->macro_step;
-    if ((close || same) && n.advances >= MANY && (double)n.steps <= few_steps * (double)n.advances) {
-        other->split = true;
+    if ((close || has_equal_steps(c)) && n.advances >= MANY &&
+        (double)n.steps <= few_steps * (double)n.advances) {
+        c->coarser.simulation->master->split = true;
         c->ratio = fmax(c->ratio, bough_finer_time_ratio());
     } else if (n.macro_steps >= COUNTED) {
         c->counted = now;
@@ -320,11 +350,12 @@ static void pass_jumps(bough_companion *c) {
 static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
-    bool held = rarer ? !bough_master_sampled(c->coarser.simulation->master) : c->run->master->at_event;
+    const bough_companion_row *row = &c->row[c->present];
+    bool held = rarer ? !row->sampled : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
     double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
-    c->flutters = c->flutters || flutters(missed_air(c->run), missed_air(c->coarser.simulation));
+    c->flutters = c->flutters || flutters(missed_air(c->run), row->missed_air);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
     c->compared++;
@@ -339,9 +370,10 @@ static void compare(bough_companion *c) {
             largest = error / (c->high[i] - c->low[i]);
     }
     record(c, largest);
-    compare_finer(c);
-    if (!c->coarser.simulation->master->split) split_steps(c);
-    bough_finer_begin(&c->finer, c->run, reach(c), bough_companion_work(c));
+    double work = c->earlier + bough_simulation_work(c->run) + row->work;
+    compare_finer(c, work);
+    if (may_split(c)) split_steps(c);
+    bough_finer_begin(&c->finer, c->run, reach(c), work);
     bough_error_notice(c, c->run->master->time);
 }
 
@@ -362,6 +394,7 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
     }
     if (!c->coarser.simulation) return bough_ok();
     run->master->compared = true;
+    take_row(c);
     if (!counts_now(c, c->run)) return bough_ok();
     compare(c);
     c->compared = 0; // one that ends in its first step knows no error
@@ -370,7 +403,14 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
 
 // By rounding, a synchronisation point of the companion may be just before that of the run.
 static bool lags(const bough_companion *c) {
-    return bough_is_ok(&c->status) && c->coarser.simulation->master->time < c->run->master->time;
+    return bough_is_ok(&c->status) && last(c)->time < c->run->master->time;
+}
+
+// The row of the run's time, or the next one.
+static const bough_companion_row *find_present(bough_companion *c) {
+    while (c->present < c->n_row - 1 && c->row[c->present].time < c->run->master->time) c->present++;
+    c->coarser.value = c->row[c->present].value;
+    return &c->row[c->present];
 }
 
 void bough_companion_compare(bough_companion *c) {
@@ -378,19 +418,20 @@ void bough_companion_compare(bough_companion *c) {
         record_alone(c);
         return;
     }
-    while (lags(c)) bough_companion_step(c);
-    if (!bough_is_ok(&c->status)) {
+    while (lags(c)) bough_companion_step(c, false);
+    const bough_companion_row *row = find_present(c);
+    if (!bough_is_ok(&c->status) && row->time < c->run->master->time) {
         give_up(c, c->status.message);
         c->run->master->compared = false;
-    } else if (c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run)) {
+    } else if (row->time == c->run->master->time && counts_now(c, c->run)) {
         compare(c);
         bough_channels_know(c->channels, c->value);
     }
 }
 
 bool bough_companion_compares(const bough_companion *c) {
-    return alive(c) && c->coarser.simulation->master->time == c->run->master->time && counts_now(c, c->run) &&
-           bough_master_sampled(c->coarser.simulation->master);
+    const bough_companion_row *row = &c->row[c->present];
+    return alive(c) && row->time == c->run->master->time && counts_now(c, c->run) && row->sampled;
 }
 
 bool bough_companion_knows(const bough_companion *c, int channel) {
@@ -410,7 +451,8 @@ double bough_companion_work(const bough_companion *c) {
 // -- copies ---------------------------------------------------------------------------------------
 
 bool bough_companion_storable(const bough_companion *c) {
-    return !alive(c) || bough_master_sampled(c->coarser.simulation->master);
+    bool ahead = c->present < c->n_row - 1;
+    return !alive(c) || (!ahead && bough_master_sampled(c->coarser.simulation->master));
 }
 
 void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
@@ -444,6 +486,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_doubles(s, c->record.row, c->record.row ? BOUGH_RECORD_MOST * c->record.width : 0);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     c->status = bough_ok();
-    c->sampled = false;
     expect_jumps(c);
+    c->n_row = c->present = 0;
+    if (alive(c)) take_row(c);
 }

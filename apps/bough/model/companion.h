@@ -150,6 +150,17 @@ typedef struct bough_run_counts {
     long steps;    // of the integrator that takes fewest
 } bough_run_counts;
 
+enum { BOUGH_COMPANION_ROWS = 8 };
+
+// The companion at one of its synchronisation points.
+typedef struct bough_companion_row {
+    double time;       // [s]
+    bool sampled;      // its loads are sampled
+    double missed_air; // largest error of the air's loads between two samples [1]
+    double work;       // so far (bough_simulation_work)
+    double *value;     // (channels->count), where the time counts
+} bough_companion_row;
+
 typedef struct bough_companion {
     bough_simulation *run;
     bough_other_run coarser;
@@ -162,7 +173,6 @@ typedef struct bough_companion {
     double from;                         // time from which they are not known [s]
     double motion;                       // largest range of all motion, or value up to 1, in SI units
     double rest;                         // motion of a scene at rest; 0: it moves
-    bool sampled;                        // the companion's channels are of its present time
     long compared;                       // times
     bough_run_counts counted;            // of the run, from where steps and corners are counted
     long corners;                        // so far
@@ -178,6 +188,9 @@ typedef struct bough_companion {
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
     bool flutters;                       // its blades flutter, those of the run do not
     bough_status status;                 // of its last step
+
+    int n_row, present; // rows of the last bough_companion_step; that of the run's time, or the next one
+    bough_companion_row row[BOUGH_COMPANION_ROWS];
 } bough_companion;
 
 // Builds the companion of the run's scene, with the run's pool, at time 0. Sets `reason` if it cannot be
@@ -188,25 +201,27 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
 // Work of run and companion since time 0 (bough_simulation_work).
 double bough_companion_work(const bough_companion *c);
 
-// Whether it is at the time of the run and can go on, so that its next step is due.
+// Whether it is not ahead of the run and can go on, so that its next step is due.
 bool bough_companion_due(const bough_companion *c);
 
-// A macro step of its own, as long as two of the run's, or two steps in one of the run's. It does not change
-// the run.
-void bough_companion_step(bough_companion *c);
+// A macro step of its own, as long as two of the run's, or two steps in one of the run's; `ahead`: up to
+// BOUGH_COMPANION_ROWS at once, where nothing of the run affects them. A run and its companion that take
+// turns at every step evict each other's data from the processor's caches. It does not change the run.
+void bough_companion_step(bough_companion *c, bool ahead);
 
 // After a step of the run: compares the two if they are at one time; the run's channels are then known
 // (bough_channels_know). Changes no result.
 void bough_companion_compare(bough_companion *c);
 
-// Whether `value` and `other` are of the present time of the run, at which the companion's loads are sampled.
+// Whether `value` and `coarser.value` are of the present time of the run, at which the companion's loads are
+// sampled.
 bool bough_companion_compares(const bough_companion *c);
 
 // Whether the channel's error is known.
 bool bough_companion_knows(const bough_companion *c, int channel);
 
-// Whether the companion can be stored now, when it may be ahead of the run: its loads are sampled, as a copy
-// needs.
+// Whether the companion can be stored now, when it may be a step ahead of the run: its loads are sampled, as
+// a copy needs.
 bool bough_companion_storable(const bough_companion *c);
 
 // Its steps end, as those of the run, once stop() is true; see bough_master_stop_by.

@@ -127,7 +127,7 @@ static void step_own(bough_run *run) {
 static void step_one(void *self, int which) {
     bough_run *run = self;
     if (which == 0) step_own(run);
-    if (which == 1) bough_companion_step(run->companion);
+    if (which == 1) bough_companion_step(run->companion, run->steps_together && !run->side_by_side);
 }
 
 bough_status bough_run_step(bough_run *run) {

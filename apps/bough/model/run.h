@@ -36,9 +36,10 @@ typedef struct bough_run {
     bough_status outcome;       // how the last step ended
 
     // by the caller, before the first step
-    bool beside;                       // other runs are simultaneous: CPU time of the calling thread only
-    bool (*stop)(void);                // asked before each step; NULL: the run is never stopped
-    bool steps_together;               // `stop` and `after` may wait for a step of the companion
+    bool beside;         // other runs are simultaneous: CPU time of the calling thread only
+    bool (*stop)(void);  // asked before each step; NULL: the run is never stopped
+    bool steps_together; // `stop` and `after` may wait for steps of the companion, and no copy is
+                         // made between steps
     bough_status (*after)(void *self); // called after each step; NULL: nothing is
     void *self;                        // for `after`
     bough_progress *progress;          // the terminal's line; NULL: none

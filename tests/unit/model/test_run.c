@@ -97,6 +97,43 @@ TEST(a_copy_goes_on_with_its_records) {
     check_near(bough_companion_work(other.companion), bough_companion_work(run.companion), 1e-12, 0);
 }
 
+typedef struct ahead {
+    const bough_run *run;
+    double most; // [s]
+} ahead;
+
+static bough_status look_ahead(void *self) {
+    ahead *x = self;
+    const bough_simulation *other = x->run->companion->coarser.simulation;
+    x->most = fmax(x->most, other->master->time - x->run->simulation->master->time);
+    return bough_ok();
+}
+
+// Its companion goes ahead of a run where no comparison may change its steps, as corners of a load may, and
+// where no thread would wait for it; its errors have the same bits.
+TEST(a_companion_ahead_states_the_same) {
+    static const char *const more[] = {
+        "title=free", "loads=[{joint: hub, torque: {times: [0, .1, .2, .21, .22, .23, .24, .25, .26], "
+                      "values: [0, 0, 0, 1, 0, 1, 0, 1, 0]}}]"};
+    for (int k = 0; k < 4; k++) {
+        const char *const *sets =
+            sets_of("simulation.duration=0.6 s", more[k / 2], k % 2 ? "simulation.threads=2" : "title=alone");
+        check_run(arena, run, "tests/data/scenes/example-turbine.yaml", sets);
+        bough_run other;
+        check_ok(bough_run_create(arena, run.simulation->scene, &other));
+        ahead x = {.run = &run};
+        run.steps_together = true;
+        run.after = look_ahead;
+        run.self = &x;
+        bough_run_all(&run);
+        assert_int_equal(run.outcome.code, BOUGH_OK);
+        assert_int_equal(x.most > 0.05, k == 0);
+        while (!bough_run_done(&other)) check_ok(bough_run_step(&other));
+        assert_memory_equal(run.companion->error, other.companion->error,
+                            (size_t)run.channels.count * sizeof(double));
+    }
+}
+
 // An undamped bar under a scheme that cannot hold it.
 TEST(a_failed_run_has_no_values) {
     check_run(arena, run, "apps/beams/rubber-bar.yaml", sets_of("simulation.coupling.scheme=frozen"));
