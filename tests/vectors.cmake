@@ -31,3 +31,4 @@ expect(rod_tangent_kernel "position_variation|velocity_variation|linearise_eight
 expect(rod_newton_kernel "bough_rod_solve_v3" 130)
 expect(rotor_load_kernel "bough_rotor_load_v3" 100)
 expect(induction_kernel "evaluate|bough_induction_solve_v3" 100)
+expect(stall_kernel "bough_stall_advance_v3" 130)

@@ -40,42 +40,34 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
     }
 }
 
-static bough_stall_inflow stall_inflow(const blade_rows *r, int j) {
-    return (bough_stall_inflow){r->speed[j], r->alpha[j], r->pitch_rate[j]};
+// Lift, drag and moment coefficients with dynamic stall; as below.
+static void advance_stall(const bough_rotor *rotor, double step, const blade_rows *r,
+                          bough_stall_state *state, bool slopes) {
+    const station_rows *m = &rotor->station;
+    bough_stall_sections sections = {rotor->n_station, m->polar,      m->chord, r->speed,
+                                     r->alpha,         r->pitch_rate, state};
+    bough_stall_results to = {.coefficients = {r->lift, r->drag, r->moment},
+                              .with_slopes = slopes,
+                              .by_angle = {r->lift_slope, r->drag_slope, r->moment_slope},
+                              .by_rate = {r->lift_rate, r->drag_rate, r->moment_rate},
+                              .static_slope = r->static_slope};
+    BOUGH_AT_LEVEL(bough_stall_advance)(&sections, step, &to);
 }
 
-static void put_slopes(const blade_rows *r, int j, bough_stall_slopes k) {
-    r->static_slope[j] = k.fixed;
-    r->lift_slope[j] = k.angle.lift;
-    r->drag_slope[j] = k.angle.drag;
-    r->moment_slope[j] = k.angle.moment;
-    r->lift_rate[j] = k.rate.lift;
-    r->drag_rate[j] = k.rate.drag;
-    r->moment_rate[j] = k.rate.moment;
-}
-
-// Lift, drag and moment coefficients: of the static polars, or with dynamic stall; and their derivatives by
-// the angle of attack and by the section's rotation.
-static void evaluate_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data,
-                            bool slopes) {
-    const blade_rows *r = data->scratch->blade + blade;
+// The same of the static polars, and their derivatives by the angle of attack; those by the section's
+// rotation stay zero.
+static void evaluate_polars(const bough_rotor *rotor, const blade_rows *r, bool slopes) {
     for (int j = 0; j < rotor->n_station; j++) {
         const bough_polar *polar = rotor->station.polar[j];
-        bough_coefficients k;
-        bough_stall_slopes by = {.fixed = 0};
-        if (data->memory.stall) {
-            k = bough_stall_advance(polar, rotor->station.chord[j], stall_inflow(r, j),
-                                    time - data->memory.clock->time,
-                                    data->memory.stall + blade * rotor->n_station + j, slopes ? &by : NULL);
-        } else {
-            k = bough_polar_at(polar, r->alpha[j]);
-            if (slopes) by.angle = bough_polar_slope(polar, r->alpha[j]);
-            by.fixed = by.angle.lift;
-        }
+        bough_coefficients k = bough_polar_at(polar, r->alpha[j]);
         r->lift[j] = k.lift;
         r->drag[j] = k.drag;
         r->moment[j] = k.moment;
-        if (slopes) put_slopes(r, j, by);
+        if (!slopes) continue;
+        bough_coefficients by = bough_polar_slope(polar, r->alpha[j]);
+        r->static_slope[j] = r->lift_slope[j] = by.lift;
+        r->drag_slope[j] = by.drag;
+        r->moment_slope[j] = by.moment;
     }
 }
 
@@ -261,7 +253,12 @@ void BOUGH_AT_LEVEL(bough_rotor_load)(const bough_rotor *rotor, const bough_roto
     const blade_rows *r = data->scratch->blade + blade;
     induce(rotor, motion, blade, data->scratch);
     bool slopes = rotor->slopes && !data->skips_slopes;
-    evaluate_polars(rotor, motion->time, blade, data, slopes);
+    if (data->memory.stall) {
+        advance_stall(rotor, motion->time - data->memory.clock->time, r,
+                      data->memory.stall + blade * rotor->n_station, slopes);
+    } else {
+        evaluate_polars(rotor, r, slopes);
+    }
     load_stations(rotor, r);
     int n = rotor->n_vertex;
     spread(n, rotor->row, LOAD, 6, r->load, data->load + 6 * blade * n);

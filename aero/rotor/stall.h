@@ -9,23 +9,12 @@
 #define BOUGH_AERO_ROTOR_STALL_H
 
 #include "aero/rotor/polar.h"
+#include "core/base/level.h"
 
 typedef enum bough_stall_kind {
     BOUGH_STALL_NONE, // the static polar at once
     BOUGH_STALL_HGM,
 } bough_stall_kind;
-
-// Trailing-edge separation point in [0, 1], 1 attached, and the lift of fully separated flow, of
-// which the static lift is made: Cl = f·slope·(α − α₀) + (1 − f)·separated. A polar of slope 0
-// has no lift and is always static.
-void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated);
-
-// The flow at a section.
-typedef struct bough_stall_inflow {
-    double speed; // relative [m/s]
-    double alpha; // angle of attack at the aerodynamic centre [rad]
-    double rate;  // nose-up rotation of the section [rad/s]
-} bough_stall_inflow;
 
 // Of one section; doubles only, so that it is saved and restored as a row of them.
 typedef struct bough_stall_state {
@@ -37,17 +26,36 @@ typedef struct bough_stall_state {
     double separation_sought, separation; // f of the lagged angle: input and state [-]
 } bough_stall_state;
 
-// Derivatives of the coefficients by the angle of attack [1/rad] and by the section's rotation [s/rad] after
-// an advance, with the separation constant: it follows later.
-typedef struct bough_stall_slopes {
-    bough_coefficients angle, rate;
-    double fixed; // of the static lift by the angle
-} bough_stall_slopes;
+// Sections side by side.
+typedef struct bough_stall_sections {
+    int n;
+    const bough_polar *const *polar; // (n); of slope 0: no lift, always static
+    const double *chord;             // (n) [m]
+    const double *speed;             // (n) relative [m/s]
+    const double *alpha;             // (n) angle of attack at the aerodynamic centre [rad]
+    const double *rate;              // (n) nose-up rotation of the section [rad/s]
+    bough_stall_state *state;        // (n)
+} bough_stall_sections;
 
-// Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
-// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static
-// polar. `chord` [m]; `slopes` may be NULL.
-bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
-                                       double step, bough_stall_state *state, bough_stall_slopes *slopes);
+typedef struct bough_stall_rows {
+    double *lift, *drag, *moment; // (n padded to whole vectors)
+} bough_stall_rows;
+
+// After an advance, all (n padded to whole vectors).
+typedef struct bough_stall_results {
+    bough_stall_rows coefficients;
+    bool with_slopes; // else the rows below are not written
+    // derivatives by the angle of attack [1/rad] and by the section's rotation [s/rad], with the separation
+    // constant: it follows later
+    bough_stall_rows by_angle, by_rate;
+    double *static_slope; // of the static lift [1/rad]
+} bough_stall_results;
+
+// Advances the states by `step` [s], during which U α changes linearly: exact for the wake and the pressure,
+// for the separation with a linear input. Finds the coefficients at the end; in equilibrium they are those of
+// the static polar.
+void bough_stall_advance(const bough_stall_sections *sections, double step,
+                         const bough_stall_results *results);
+BOUGH_DECLARE_LEVELS(bough_stall_advance);
 
 #endif

@@ -17,7 +17,7 @@ BOUGH_INLINE double lane_round(double x) {
 }
 
 // An angle less multiples of 2π, in [−π, π].
-BOUGH_INLINE double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI)); }
+BOUGH_INLINE double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x * (0.5 / BOUGH_PI)); }
 
 BOUGH_INLINE double lane_clamp(double x, double low, double high) {
     x = x > low ? x : low;
@@ -49,8 +49,13 @@ BOUGH_INLINE sine_cosine lane_sine_cosine(double x) {
     return (sine_cosine){sine, cosine};
 }
 
+// eˣ = scale (1 + rest)
+typedef struct exponential {
+    double scale, rest;
+} exponential;
+
 // For −700 ≤ x ≤ 0.
-BOUGH_INLINE double lane_exp(double x) {
+BOUGH_INLINE exponential lane_exponential(double x) {
     const double big = 0x1.8p52;
     double shifted = x * 1.4426950408889634 + big, n = shifted - big;
     double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
@@ -65,14 +70,24 @@ BOUGH_INLINE double lane_exp(double x) {
     p = 1. / 120 + r * p;
     p = 1. / 24 + r * p;
     p = 1. / 6 + r * p;
-    p = 1 + r * (1 + r * (0.5 + r * p));
     // The low bits of `shifted` are n; moved into the exponent they make 2ⁿ.
     uint64_t bits;
     memcpy(&bits, &shifted, sizeof bits);
     bits = (bits + 1023) << 52;
-    double scale;
-    memcpy(&scale, &bits, sizeof scale);
-    return p * scale;
+    exponential e = {.rest = r * (1 + r * (0.5 + r * p))};
+    memcpy(&e.scale, &bits, sizeof e.scale);
+    return e;
+}
+
+BOUGH_INLINE double lane_exp(double x) {
+    exponential e = lane_exponential(x);
+    return (1 + e.rest) * e.scale;
+}
+
+// eˣ − 1
+BOUGH_INLINE double lane_expm1(double x) {
+    exponential e = lane_exponential(x);
+    return e.scale * e.rest + (e.scale - 1);
 }
 
 // For |t| ≤ ½: asin(t)/t by its best polynomial of degree 12 in t².

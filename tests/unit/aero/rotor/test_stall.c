@@ -7,6 +7,27 @@
 
 static const double degree = BOUGH_PI / 180;
 
+typedef struct flow {
+    double speed, alpha, rate;
+} flow;
+
+typedef struct slopes {
+    bough_coefficients angle, rate;
+    double fixed;
+} slopes;
+
+// Of one section; k may be NULL.
+static bough_coefficients advance(const bough_polar *foil, double chord, flow in, double step,
+                                  bough_stall_state *state, slopes *k) {
+    double row[10][BOUGH_LANES];
+    bough_stall_results to = {
+        {row[0], row[1], row[2]}, k != NULL, {row[3], row[4], row[5]}, {row[6], row[7], row[8]}, row[9]};
+    BOUGH_OF_LEVEL(bough_stall_advance, bough_level_chosen())
+    (&(bough_stall_sections){1, &foil, &chord, &in.speed, &in.alpha, &in.rate, state}, step, &to);
+    if (k) *k = (slopes){{*row[3], *row[4], *row[5]}, {*row[6], *row[7], *row[8]}, *row[9]};
+    return (bough_coefficients){*row[0], *row[1], *row[2]};
+}
+
 // Lift 2π(α − 1°) up to 20° from there, without drag.
 static const double plate_rows[4][4] = {{-180, 0, 0, 0},
                                         {-19, -20 * 2 * BOUGH_PI *BOUGH_PI / 180, 0, 0},
@@ -24,22 +45,22 @@ static void check_static(const bough_polar *polar, double alpha, bough_coefficie
     check_near(k.moment, s.moment, 1e-8, 1e-8);
 }
 
-// Static lift is the mixture of attached and separated, at every angle of every airfoil; f is one
+// In equilibrium lift is the mixture of attached and separated, at every angle of every airfoil; f is one
 // somewhere in attached flow and zero in deep stall.
 TEST(parts_make_the_static_polar) {
     airfoils *a = *context;
     for (int p = 2; p < 8; p++) {
-        bough_polar foil = a->polar[p];
-        double most = 0, f, separated;
-        assert_true(foil.slope > 5 && foil.slope < 9);
-        check_near(bough_polar_at(&a->polar[p], foil.zero_lift).lift, 0, 0, 1e-12);
+        const bough_polar *foil = a->polar + p;
+        double most = 0;
+        assert_true(foil->slope > 5 && foil->slope < 9);
+        check_near(bough_polar_at(foil, foil->zero_lift).lift, 0, 0, 1e-12);
         for (double alpha = -BOUGH_PI; alpha < BOUGH_PI; alpha += 0.1234 * degree) {
-            bough_stall_split(&foil, alpha, &f, &separated);
-            double lift = f * foil.slope * (alpha - foil.zero_lift) + (1 - f) * separated;
-            check_near(lift, bough_polar_at(&a->polar[p], alpha).lift, 0, 1e-9);
-            assert_true(f >= 0 && f <= 1);
-            if (fabs(alpha) > 60 * degree) check_near(f, 0, 0, 0);
-            most = fmax(most, f);
+            bough_stall_state s = {0};
+            double lift = advance(foil, 3, (flow){50, alpha, 0}, 0, &s, NULL).lift;
+            check_near(lift, bough_polar_at(foil, alpha).lift, 0, 1e-9);
+            assert_true(s.separation >= 0 && s.separation <= 1);
+            if (fabs(alpha) > 60 * degree) check_near(s.separation, 0, 0, 0);
+            most = fmax(most, s.separation);
         }
         assert_true(most > 0.95);
     }
@@ -53,13 +74,10 @@ TEST(steady_limit_is_the_static_polar) {
         bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
             bough_stall_state s = {0};
-            bough_coefficients k =
-                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0, &s, NULL);
+            bough_coefficients k = advance(&foil, 3, (flow){50, angle * degree, 0}, 0, &s, NULL);
             check_static(&a->polar[p], angle * degree, k); // started in equilibrium
-            bough_stall_advance(&foil, 3, (bough_stall_inflow){30, (angle + 170) * degree, 0.3}, 0.02, &s,
-                                NULL);
-            for (int i = 0; i < 4; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 1e3, &s, NULL);
+            advance(&foil, 3, (flow){30, (angle + 170) * degree, 0.3}, 0.02, &s, NULL);
+            for (int i = 0; i < 4; i++) k = advance(&foil, 3, (flow){50, angle * degree, 0}, 1e3, &s, NULL);
             check_static(&a->polar[p], angle * degree, k);
         }
     }
@@ -79,19 +97,25 @@ TEST(a_run_settles_on_the_static_polar) {
         bough_polar_smoothen(a->arena, smooth);
         if (i + 1 < N) bough_polar_blend(a->arena, a->polar + i, a->polar + i + 1, 0.4, mixed);
     }
-    double worst = 0;
+    // all angles side by side
+    enum { ANGLES = 101, ROW = 104 };
+    double chord[ROW], speed[ROW], from[ROW], alpha[ROW], row[3][ROW], still[ROW] = {0}, worst = 0;
+    const bough_polar *foil[ANGLES];
+    bough_stall_results to = {.coefficients = {row[0], row[1], row[2]}};
     for (int p = 0; p < 3 * N - 1; p++) {
-        bough_polar foil = *(polar + p);
-        for (double angle = -10; angle <= 15; angle += 0.25) {
-            bough_stall_state s = {0};
-            bough_coefficients k =
-                bough_stall_advance(&foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s, NULL);
-            for (int i = 0; i < STEPS; i++)
-                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02, &s,
-                                        NULL);
-            bough_coefficients fixed = bough_polar_at(polar + p, angle * degree);
-            worst = fmax(worst, fmax(fabs(k.lift - fixed.lift), fabs(k.drag - fixed.drag)));
-            worst = fmax(worst, fabs(k.moment - fixed.moment));
+        bough_stall_state state[ANGLES] = {0};
+        for (int i = 0; i < ANGLES; i++) {
+            foil[i] = polar + p;
+            chord[i] = 3, speed[i] = 50, from[i] = polar[p].zero_lift;
+            alpha[i] = (i / 4. - 10) * degree;
+        }
+        bough_stall_sections s = {ANGLES, foil, chord, speed, from, still, state};
+        for (int i = 0; i <= STEPS; i++, s.alpha = alpha)
+            BOUGH_OF_LEVEL(bough_stall_advance, bough_level_chosen())(&s, 0.02, &to);
+        for (int i = 0; i < ANGLES; i++) {
+            bough_coefficients fixed = bough_polar_at(foil[i], alpha[i]);
+            worst = fmax(worst, fmax(fabs(row[0][i] - fixed.lift), fabs(row[1][i] - fixed.drag)));
+            worst = fmax(worst, fabs(row[2][i] - fixed.moment));
         }
     }
     print_message("most off the static polars: %.2g\n", worst);
@@ -115,8 +139,8 @@ TEST(attached_lift_is_indicial) {
         bough_stall_state s = {0};
         for (int i = 0; i <= PER_CYCLE * CYCLES; i++) {
             double phase = 2 * BOUGH_PI * (i % PER_CYCLE) / PER_CYCLE;
-            bough_stall_inflow inflow = {speed, 4 * degree + amplitude * sin(phase), 0};
-            double lift = bough_stall_advance(&foil, chord, inflow, step, &s, NULL).lift;
+            flow inflow = {speed, 4 * degree + amplitude * sin(phase), 0};
+            double lift = advance(&foil, chord, inflow, step, &s, NULL).lift;
             if (i > PER_CYCLE * (CYCLES - 1)) got += lift * cexp(-i1 * phase) * 2 / PER_CYCLE;
         }
         double complex expected = -i1 * foil.slope * amplitude * c; // of a sine
@@ -132,8 +156,7 @@ TEST(rotation_lifts) {
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_coefficients k = {0};
-    for (int i = 0; i < 3; i++)
-        k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0.4}, 100, &s, NULL);
+    for (int i = 0; i < 3; i++) k = advance(&foil, 2, (flow){40, 4 * degree, 0.4}, 100, &s, NULL);
     double x = 2 * 0.4 / 80;
     check_near(k.lift, foil.slope * (3 * degree + x) + BOUGH_PI * x, 1e-9, 0);
     check_near(k.drag, foil.slope * (3 * degree + x) * x, 1e-9, 0);
@@ -146,10 +169,9 @@ TEST(withheld_lift_leans_back) {
     airfoils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
-    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s, NULL);
-    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s, NULL);
-    bough_coefficients k =
-        bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s, NULL);
+    advance(&foil, 2, (flow){40, 4 * degree, 0}, 0, &s, NULL);
+    advance(&foil, 2, (flow){40, 4 * degree, 0}, 100, &s, NULL);
+    bough_coefficients k = advance(&foil, 2, (flow){40, 6 * degree, 0}, 1e-7, &s, NULL);
     check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
     check_near(k.drag, degree * k.lift, 1e-4, 0);
 }
@@ -163,12 +185,12 @@ TEST(indicial_lift_is_the_polars) {
     bough_polar foil;
     bough_polar_build(a->arena, &def, &foil);
     bough_stall_state s = {0};
-    bough_stall_advance(&foil, chord, (bough_stall_inflow){speed, 4 * degree, 0}, 0, &s, NULL);
+    advance(&foil, chord, (flow){speed, 4 * degree, 0}, 0, &s, NULL);
     double before = bough_polar_at(&foil, 4 * degree).lift;
-    bough_stall_inflow after = {speed, 4 * degree + step, 0};
-    bough_stall_advance(&foil, chord, after, 1e-9, &s, NULL);
+    flow after = {speed, 4 * degree + step, 0};
+    advance(&foil, chord, after, 1e-9, &s, NULL);
     for (int i = 1; i <= 10; i++) {
-        double lift = bough_stall_advance(&foil, chord, after, 0.5 * chord / speed, &s, NULL).lift;
+        double lift = advance(&foil, chord, after, 0.5 * chord / speed, &s, NULL).lift;
         double expected = 1 - k[0] * exp(-k[2] * i) - k[1] * exp(-k[3] * i);
         check_near((lift - before) / (foil.slope * step), expected, 0, 1e-6);
     }
@@ -190,8 +212,7 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
     for (int i = 0; i <= cycles * per_cycle; i++) {
         double phase = 2 * BOUGH_PI * (i % per_cycle) / per_cycle;
         double alpha = mean + amplitude * sin(phase);
-        double lift =
-            bough_stall_advance(foil, chord, (bough_stall_inflow){speed, alpha, 0}, step, &s, NULL).lift;
+        double lift = advance(foil, chord, (flow){speed, alpha, 0}, step, &s, NULL).lift;
         int last = i - (cycles - 1) * per_cycle;
         if (last == 0) first = l.up = lift;
         if (last > 0) l.area += (lift + before) / 2 * (alpha - angle);
@@ -234,19 +255,19 @@ TEST(slopes_are_those_of_an_advance) {
         for (int i = 0; i < 6; i++) {
             double alpha = angle[i] * degree;
             bough_stall_state before = {0};
-            bough_stall_inflow inflow = {50, alpha - 3 * degree, 0};
-            bough_stall_advance(&foil, chord, inflow, 0, &before, NULL);
+            flow inflow = {50, alpha - 3 * degree, 0};
+            advance(&foil, chord, inflow, 0, &before, NULL);
             bough_coefficients change[2][2];
             for (int k = 0; k < 4; k++) {
                 double by = k % 2 == 0 ? -d / 2 : d / 2;
                 bough_stall_state s = before;
-                inflow = (bough_stall_inflow){50, alpha + (k < 2 ? by : 0), turning + (k < 2 ? 0 : 20 * by)};
-                change[k / 2][k % 2] = bough_stall_advance(&foil, chord, inflow, step, &s, NULL);
+                inflow = (flow){50, alpha + (k < 2 ? by : 0), turning + (k < 2 ? 0 : 20 * by)};
+                change[k / 2][k % 2] = advance(&foil, chord, inflow, step, &s, NULL);
             }
             bough_stall_state s = before;
-            inflow = (bough_stall_inflow){50, alpha, turning};
-            bough_stall_slopes k;
-            bough_stall_advance(&foil, chord, inflow, step, &s, &k);
+            inflow = (flow){50, alpha, turning};
+            slopes k;
+            advance(&foil, chord, inflow, step, &s, &k);
             check_near(k.fixed, bough_polar_slope(&foil, alpha).lift, 0, 0);
             const bough_coefficients slope[2] = {k.angle, k.rate};
             for (int j = 0; j < 2; j++) {
@@ -270,10 +291,9 @@ TEST(odd_flow_is_finite) {
         for (int i = 0; i < 20000; i++) {
             double r[4];
             for (int c = 0; c < 4; c++) r[c] = sample_between(&seed, 0, 1);
-            bough_stall_inflow inflow = {i % 9 ? 90 * r[0] : 0, 20 * (r[1] - 0.5),
-                                         1e3 * (r[2] - 0.5) * (i % 5 == 0)};
+            flow inflow = {i % 9 ? 90 * r[0] : 0, 20 * (r[1] - 0.5), 1e3 * (r[2] - 0.5) * (i % 5 == 0)};
             double step = i % 7 ? 0.02 * r[3] : (i % 14 ? 0 : 1e6);
-            bough_coefficients k = bough_stall_advance(&foil, 3, inflow, step, &s, NULL);
+            bough_coefficients k = advance(&foil, 3, inflow, step, &s, NULL);
             assert_true(fabs(k.lift) < 1e2 && fabs(k.drag) < 1e3 && fabs(k.moment) < 1e2);
         }
     }

@@ -11,6 +11,7 @@ TEST(functions_agree_with_the_library) {
         check_near(k.sine, sin(x), 0, 3e-16);
         check_near(k.cosine, cos(x), 0, 3e-16);
         check_near(lane_exp(-700 * u * u), exp(-700 * u * u), 7e-16, 0);
+        check_near(lane_expm1(-700 * u * u * u * u), expm1(-700 * u * u * u * u), 1e-15, 0);
         check_near(lane_arc_sine(0.5 * u), asin(0.5 * u), 7e-16, 0);
         double radius = exp(20 * (u - 0.5));
         double angle = lane_angle(radius * sin(x), radius * cos(x));
