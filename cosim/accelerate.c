@@ -8,12 +8,6 @@
 // Jacobian.
 #include "cosim/accelerate.h"
 
-#include "core/base/base.h"
-
-#include <assert.h>
-#include <math.h>
-#include <string.h>
-
 enum {
     MOST_COLUMNS = 40,
     RECENT = 5, // norms kept for the contraction

@@ -6,8 +6,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-
 typedef enum bough_acceleration {
     BOUGH_ACCELERATE_NONE,       // u + r
     BOUGH_ACCELERATE_RELAXATION, // u + ω r, ω constant

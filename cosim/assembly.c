@@ -1,11 +1,6 @@
 // The connections of theory (54), built once.
 #include "cosim/assembly.h"
 
-#include "core/base/base.h"
-
-#include <assert.h>
-#include <string.h>
-
 // Members, and where their states, inputs and outputs begin among all.
 static void take_members(bough_assembly *a, bough_arena *arena, const bough_assembly_def *def) {
     size_t n = (size_t)def->n_member;

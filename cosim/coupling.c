@@ -1,9 +1,6 @@
 // Moves of members over a macro step, the polynomials of theory (58), and the exchange at its end.
 #include "cosim/coupling.h"
 
-#include <assert.h>
-#include <string.h>
-
 struct bough_coupling_scratch {
     int *listed;              // (n_member) the members of the level in progress
     bool restart;             // their integrators start anew

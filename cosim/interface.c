@@ -3,9 +3,6 @@
 
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 static const bough_system *system_of(const bough_interface *k, int member) {
     return &k->assembly->member[member]->system;
 }

@@ -1,10 +1,4 @@
 #include "cosim/master.h"
-#include "core/base/base.h"
-
-#include <assert.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 bough_master_def bough_master_def_default(void) {
     return (bough_master_def){.scheme = bough_scheme_options_default()};

@@ -1,8 +1,5 @@
 #include "cosim/member.h"
 
-#include <assert.h>
-#include <string.h>
-
 // -- the system under its inputs, as an ODE for its integrator -------------------------------------
 
 // A system without inputs may be advanced without a signal.

@@ -1,11 +1,6 @@
 // The table of schemes, and what all of them have in common.
 #include "cosim/scheme.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 // One line a scheme: its entry is bough_scheme_<this>.
 #define SCHEMES(ENTRY)                                                                                       \
     ENTRY(frozen)                                                                                            \

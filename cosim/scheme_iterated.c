@@ -24,10 +24,6 @@
 #include "cosim/scheme.h"
 #include "cosim/whole.h"
 
-#include <assert.h>
-#include <math.h>
-#include <string.h>
-
 // Inputs below this part of the largest one contain only rounding.
 static const double least_scale = 1e-6;
 

@@ -6,9 +6,6 @@
 #include "cosim/scheme.h"
 #include "cosim/whole.h"
 
-#include <assert.h>
-#include <math.h>
-
 // -- steps coupled at the stages --------------------------------------------------------------------
 
 typedef struct stages {

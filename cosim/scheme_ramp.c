@@ -18,9 +18,6 @@
 #include "cosim/interface.h"
 #include "cosim/scheme.h"
 
-#include <math.h>
-#include <string.h>
-
 typedef struct ramp {
     // constant
     bool named; // the scene names θ

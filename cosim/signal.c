@@ -1,7 +1,5 @@
 #include "cosim/signal.h"
 
-#include "core/base/base.h"
-
 bough_signal bough_signal_create(bough_arena *arena, int n) {
     return (bough_signal){.n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};
 }

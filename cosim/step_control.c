@@ -3,8 +3,6 @@
 
 #include "cosim/scheme.h"
 
-#include <math.h>
-
 bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling *c,
                                               const bough_step_control_def *def, double macro_step,
                                               int order) {

@@ -4,10 +4,6 @@
 
 #include "core/base/linalg.h"
 
-#include <assert.h>
-#include <math.h>
-#include <string.h>
-
 enum { FOLLOWERS, LEADERS, ALL };
 
 typedef struct member_work {

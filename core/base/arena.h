@@ -9,8 +9,6 @@
 
 #include "core/base/status.h"
 
-#include <stddef.h>
-
 typedef struct bough_arena bough_arena;
 
 // A new, empty arena; NULL when memory is exhausted.

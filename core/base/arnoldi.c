@@ -2,9 +2,6 @@
 
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 static const double dependent = 1e-13; // norm outside the basis, relative to the whole: below it, dependent
 static const double cancelled = 0.1;   // the same of one vector outside those beside it: another pass
 

@@ -6,8 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-
 enum { BOUGH_ARNOLDI_AT_ONCE = 8 }; // most
 
 typedef struct bough_arnoldi {

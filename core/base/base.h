@@ -1,4 +1,4 @@
-// Constants and small helpers that every folder uses.
+// What every file of the program has: the usual headers of the C library, constants, small helpers.
 #ifndef BOUGH_CORE_BASE_BASE_H
 #define BOUGH_CORE_BASE_BASE_H
 
@@ -6,6 +6,10 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #define BOUGH_PI 3.14159265358979323846
 #define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]

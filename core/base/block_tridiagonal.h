@@ -9,10 +9,7 @@
 #define BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
 
 #include "core/base/arena.h"
-#include "core/base/base.h"
 #include "core/base/level.h"
-
-#include <stdbool.h>
 
 enum { BOUGH_BLOCK = 6 * BOUGH_COLUMN }; // doubles of a padded 6×6 block
 

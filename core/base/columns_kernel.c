@@ -2,8 +2,6 @@
 // all of them.
 #include "core/base/linalg.h"
 
-#include "core/base/base.h"
-
 enum { AT_ONCE = 8 };
 
 // sum += Σ_j weight_j column_j, `count` known where this is inlined

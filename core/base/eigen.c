@@ -3,9 +3,6 @@
 
 #include "core/base/arnoldi.h"
 
-#include <math.h>
-#include <string.h>
-
 enum {
     BLOCK_SIZE = BOUGH_EIGEN_AT_ONCE, // starting vectors: multiplicities up to this are found
     SPARE = 15,                       // vectors beyond those wanted before the first look

@@ -5,9 +5,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdint.h>
-#include <stdio.h>
-
 enum { BOUGH_INPUT_REASON = 96 };
 
 // Bytes: of a text that people write, and of data (wind, results, programs).

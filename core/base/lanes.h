@@ -4,11 +4,7 @@
 #ifndef BOUGH_CORE_BASE_LANES_H
 #define BOUGH_CORE_BASE_LANES_H
 
-#include "core/base/base.h"
 #include "core/base/rotation.h"
-
-#include <stdint.h>
-#include <string.h>
 
 // The nearest integer, for |x| < 2⁵¹.
 BOUGH_INLINE double lane_round(double x) {

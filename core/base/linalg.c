@@ -2,13 +2,7 @@
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS
 #include "core/base/linalg.h"
 
-#include "core/base/base.h"
-
-#include <math.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <threads.h>
 

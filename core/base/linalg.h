@@ -6,8 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/level.h"
 
-#include <stdbool.h>
-
 // For a program, before its first thread: OpenBLAS takes its slowest kernels, those for Prescott, on a
 // processor that is newer than itself. Names it the ones for this processor's level, unless OPENBLAS_CORETYPE
 // does.

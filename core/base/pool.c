@@ -1,13 +1,9 @@
 #include "core/base/pool.h"
 
-#include <assert.h>
 #include <omp.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdlib.h>
 #include <time.h>
 
 // Longer lists are done in portions.

@@ -2,10 +2,6 @@
 // a library's matrix products, made for many, do slowly.
 #include "core/base/linalg.h"
 
-#include "core/base/base.h"
-
-#include <string.h>
-
 enum {
     COLUMNS = 4, // of a at a time
     FOUR = 4,    // columns of b at a time

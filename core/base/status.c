@@ -1,8 +1,6 @@
 #include "core/base/status.h"
 
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 // Not an initialiser, which would clear the whole message.
 bough_status bough_ok(void) {

@@ -3,7 +3,7 @@
 #ifndef BOUGH_CORE_BASE_STATUS_H
 #define BOUGH_CORE_BASE_STATUS_H
 
-#include <stdbool.h>
+#include "core/base/base.h"
 
 typedef enum bough_code {
     BOUGH_OK = 0,

@@ -4,8 +4,6 @@
 
 #include "core/base/base.h"
 
-#include <math.h>
-
 typedef struct bough_vec3 {
     double x, y, z;
 } bough_vec3;

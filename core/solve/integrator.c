@@ -1,8 +1,6 @@
 // The table of integrators.
 #include "core/solve/integrator.h"
 
-#include <assert.h>
-
 // By their kinds; scenes name a method as its operations do.
 static const bough_integrator_ops *const methods[] = {
     [BOUGH_IDA] = &bough_integrator_ida,

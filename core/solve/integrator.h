@@ -10,8 +10,6 @@
 #include "core/base/status.h"
 #include "core/solve/system.h"
 
-#include <stdbool.h>
-
 // Work done so far, for the summary.
 typedef struct bough_statistics {
     long steps, failed_steps, derivatives, jacobians, factorisations, iterations;

@@ -5,8 +5,6 @@
 // axes, is kept to second order only: docs/coupling.md.
 #include "core/solve/integrator.h"
 
-#include <math.h>
-
 enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 
 static const double slow = 0.1;         // contraction beyond which the tangents are renewed

@@ -8,9 +8,6 @@
 // tolerance. The methods that it does not use are tried after 2 macro steps of IDA, 6 more, 18 more, ...
 #include "core/solve/integrator.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { ROSENBROCK, IDA, IDA_OF_ORDER_2, METHODS };
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step

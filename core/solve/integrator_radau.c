@@ -7,11 +7,7 @@
 // T⁻¹ A⁻¹ T = diag(γ, (α −β; β α)).
 #include "core/solve/integrator.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { STAGES = 3, MOST_ITERATIONS = 7, MOST_STEPS = 200000 }; // steps per call
 enum { MOST_STATES = 400 };

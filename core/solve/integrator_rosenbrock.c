@@ -4,9 +4,6 @@
 // serves many steps. theory (52, 53)
 #include "core/solve/rosenbrock.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // steps with the same ∂f/∂t; every macro step finds it anew

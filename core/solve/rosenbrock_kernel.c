@@ -1,8 +1,6 @@
 // The formulas of a step of the Rosenbrock method. theory (52, 53)
 #include "core/solve/rosenbrock.h"
 
-#include "core/base/base.h"
-
 #define AT(name) BOUGH_AT_LEVEL(bough_rosenbrock_##name)
 
 enum { STAGES = BOUGH_ROSENBROCK_STAGES };

@@ -2,7 +2,6 @@
 // BDF of the DASSL family). They take one step a call, and their Newton matrix I − γ ∂f/∂y is the system's:
 // SUNDIALS gets a matrix without content, a call for which the system linearises, and a linear solver whose
 // setup and solution are the system's. Only this file and vector.c use SUNDIALS.
-#include "core/base/base.h"
 #include "core/solve/integrator.h"
 #include "core/solve/vector.h"
 
@@ -11,8 +10,6 @@
 #include <cvode/cvode_ls.h>
 #include <ida/ida.h>
 #include <ida/ida_ls.h>
-#include <stdio.h>
-#include <string.h>
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nvector.h>

@@ -10,8 +10,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-
 // One evaluation of f and h together.
 typedef struct bough_evaluation {
     double t;            // [s]

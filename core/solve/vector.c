@@ -4,10 +4,7 @@
 
 #include "core/base/base.h"
 
-#include <math.h>
 #include <nvector/nvector_serial.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { ALIGNMENT = 64 };
 

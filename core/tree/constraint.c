@@ -2,8 +2,6 @@
 //     (E b)˙ = ω × E b,   ω = E Ω_b − Ω_a,   ḋ = E v_b − v_a − Ω_a × d.
 #include "core/tree/constraint.h"
 
-#include "core/base/base.h"
-
 static bough_vec3 unit(bough_vec3 x) { return bough_scale(1 / bough_norm(x), x); }
 
 // A unit vector normal to a unit vector, by Gram and Schmidt from the axis that is closest to normal.

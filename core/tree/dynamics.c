@@ -1,11 +1,8 @@
 // Recursive dynamics of the rigid tree, theory (39, 40, 41).
 #include "core/tree/dynamics.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/tree/force.h"
-
-#include <string.h>
 
 enum { N = 6, NN = N * N };
 

@@ -1,7 +1,6 @@
 // Springs and bushings between markers, applied wrenches, and their variations; theory (42).
 #include "core/tree/force.h"
 
-#include "core/base/base.h"
 #include "core/base/rotation.h"
 
 typedef bough_vec3 v3;

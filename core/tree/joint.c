@@ -1,7 +1,6 @@
 // The kinds of joints: S and N of theory (39, 45). Speeds are components in body axes.
 #include "core/tree/joint.h"
 
-#include "core/base/base.h"
 #include "core/base/rotation.h"
 
 // A joint slides along no, one, two or all axes, and then rotates.

@@ -1,12 +1,9 @@
 // Closed loops, theory (45, 46).
 #include "core/tree/loop.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
-
-#include <string.h>
 
 // Eigenvalues of the scaled matrix below this, relative to the largest, belong to dependent equations. It is
 // the square of the distance from a position in which the loop could branch, relative to the loop's size.

@@ -1,11 +1,6 @@
 // Given motions of joints: smooth ramps, cubic splines through tables, and cubics that are set during a run.
 #include "core/tree/motion.h"
 
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
-
 // -- evaluation ------------------------------------------------------------------------------
 
 // The smooth step s(τ) = τ − sin(2πτ)/2π with s' and s'' zero at both ends.

@@ -5,8 +5,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-
 typedef struct bough_motion_def {
     bool given;                   // false: the joint moves by its forces, all else is void
     bool speed;                   // what is given is q̇ [rad/s, m/s], else q [rad, m]

@@ -1,8 +1,6 @@
 // Defaults of the tree's def; queries of poses and twists; loads and motions that change during a run.
 #include "core/tree/tree.h"
 
-#include "core/base/base.h"
-
 bough_body_def bough_body_def_default(void) {
     bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1}, .second_axis = {1, 0, 0}};
     def.joint = bough_transform_identity();

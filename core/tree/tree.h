@@ -13,8 +13,6 @@
 #include "core/tree/joint.h"
 #include "core/tree/motion.h"
 
-#include <stdbool.h>
-
 enum { BOUGH_GROUND = -1 }; // as a body's parent, a marker's body or a link's parent
 enum {
     BOUGH_PORT_INPUTS = 6,

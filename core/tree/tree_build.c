@@ -1,12 +1,8 @@
 // Builds the tree from its def: bodies by level from the ground, welded bodies in one link, frames, forces.
 #include "core/tree/tree.h"
 
-#include "core/base/base.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
-
-#include <assert.h>
-#include <string.h>
 
 // -- before it is built ---------------------------------------------------------------------------
 

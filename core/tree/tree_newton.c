@@ -5,8 +5,6 @@
 #include "core/tree/dynamics.h"
 #include "core/tree/force.h"
 
-#include <string.h>
-
 enum { N = 6, Z = 18 }; // components of a twist, of ζ
 
 // ζ of a link

@@ -1,13 +1,10 @@
 // The tree as a system: core/solve/system.h.
 #include "core/tree/tree.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/tree/dynamics.h"
 #include "core/tree/loop.h"
 #include "core/tree/tree_newton.h"
-
-#include <string.h>
 
 // Central differences: the cube root of the rounding error balances truncation against cancellation.
 static const double central_increment = 6e-6;

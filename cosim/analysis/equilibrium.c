@@ -2,8 +2,6 @@
 #include "cosim/analysis/equilibrium.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 // Largest ratio of the second correction of a step to the first, and the ratio aimed at; it grows with the
 // square of γ, or faster. The second correction has tangents of its own: with those of the first a slender

@@ -3,9 +3,6 @@
 // the trapezoidal rule would keep all stiff modes.
 #include "cosim/analysis/stability.h"
 
-#include <math.h>
-#include <string.h>
-
 static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
 
 typedef struct linear_factors {

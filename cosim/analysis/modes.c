@@ -1,11 +1,6 @@
 // Modes of the whole, theory (74, 75, 76).
 #include "cosim/analysis/modes.h"
 
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
-
 enum { TERMS = 400 }; // of the series for the spin
 
 static const double series = 1e-13; // of the solution: terms below are left out

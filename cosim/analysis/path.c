@@ -3,9 +3,6 @@
 
 #include "cosim/analysis/equilibrium.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { CORRECTIONS = 30, FEW = 16, PARABOLAS = 5 };
 
 // γ is so long that a step of implicit Euler is one of Newton's method: until the response to the loads

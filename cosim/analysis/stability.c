@@ -1,13 +1,7 @@
 #include "cosim/analysis/stability.h"
 
 #include "core/base/arnoldi.h"
-#include "core/base/base.h"
 #include "cosim/scheme.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
 static const double span = 0.06;      // this time passes per Arnoldi vector [s]

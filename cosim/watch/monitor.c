@@ -12,12 +12,7 @@
 // wrong.
 #include "cosim/watch/monitor.h"
 
-#include "core/base/base.h"
 #include "cosim/scheme.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { FIRST_STEPS = 8 };
 static const double suspicious_growth = 100;

@@ -1,13 +1,10 @@
 // The shapes of a modal piece: clamped modes, rigid motions and static deflections, from the rod's own
 // tangents at rest, orthonormal in the mass and, by Rayleigh and Ritz, in the stiffness (docs/theory.md,
 // "Modal bodies").
-#include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/base/spatial.h"
 #include "flexbody/modal/modal.h"
 #include "flexbody/rod/rod_tangent.h"
-
-#include <string.h>
 
 enum { RIGID = 6 };
 

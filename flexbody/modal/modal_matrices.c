@@ -5,8 +5,6 @@
 
 #include "core/base/spatial.h"
 
-#include <string.h>
-
 typedef struct vertex_mass {
     double mass;
     bough_vec3 arm;      // of the mass centre from the vertex, in frame axes [m]

@@ -1,7 +1,5 @@
 #include "flexbody/modal/modal_system.h"
 
-#include <string.h>
-
 // -- vectors over the shapes, matrices by columns (m × stride) -----------------------------------------
 
 static inline double dot(int n, const double *restrict x, const double *restrict y) {

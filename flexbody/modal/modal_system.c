@@ -1,10 +1,7 @@
 // A modal body: sweeps over its pieces, their tangents, one dense Newton matrix.
 #include "flexbody/modal/modal_system.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
-
-#include <string.h>
 
 struct bough_modal_body {
     const bough_modal_model *model;

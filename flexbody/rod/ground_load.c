@@ -2,9 +2,6 @@
 // and an evaluation sums the nine results.
 #include "flexbody/rod/ground_load.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { VERTEX_ROWS = 6, ROWS = 18 }; // of a load: on the vertices, and with those along the segments
 
 // A load is linear in the axes' components: value = Σ_j axis_j by_axis_j.

@@ -5,8 +5,6 @@
 #include "core/base/spatial.h"
 #include "flexbody/rod/rod_segment.h"
 
-#include <string.h>
-
 // Arrays over segments and vertices.
 static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     size_t s = (size_t)m->stride;

@@ -15,7 +15,6 @@
 #define BOUGH_FLEXBODY_ROD_ROD_H
 
 #include "core/base/arena.h"
-#include "core/base/base.h"
 #include "core/base/level.h"
 #include "core/base/rotation.h"
 #include "core/base/schedule.h"

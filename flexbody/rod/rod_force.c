@@ -1,8 +1,6 @@
 // Wrenches and stresses of a rod.
 #include "flexbody/rod/rod_lanes.h"
 
-#include <math.h>
-
 void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                    double *wrench) {
     int s = m->stride;

@@ -1,8 +1,6 @@
 // Right-hand side of the rod: gather, segment forces, vertex balances.
 #include "flexbody/rod/rod_lanes.h"
 
-#include <string.h>
-
 // Vertices whose motion is an input: the root, and the last one of a rod that carries bodies.
 static void gather_input(const bough_rod_model *m, const double *input, bough_rod_scratch *scratch) {
     int s = m->stride;

@@ -4,9 +4,6 @@
 
 #include "flexbody/rod/rod_lanes.h"
 
-#include <math.h>
-#include <string.h>
-
 // Points of Gauss–Legendre quadrature over a part of a segment, exact to degree 5.
 enum { POINTS = 3 };
 static const double gauss_at[POINTS] = {-0.7745966692414834, 0, 0.7745966692414834};

@@ -5,9 +5,6 @@
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/rod/rod_tangent.h"
 
-#include <math.h>
-#include <string.h>
-
 // Numbers of vertex i + 1 in rows of n: its state's, or the end's.
 typedef struct vertex_row {
     const double *at;

@@ -7,9 +7,6 @@
 #include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
-#include <math.h>
-#include <string.h>
-
 struct bough_rod_body {
     const bough_rod_model *model;
     bough_rod_loads loads;

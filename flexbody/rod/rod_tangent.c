@@ -3,8 +3,6 @@
 
 #include "flexbody/rod/rod_tangent_layout.h"
 
-#include <string.h>
-
 static void blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
     b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
     bough_block_tridiagonal_init(&b->position, arena, m->n);

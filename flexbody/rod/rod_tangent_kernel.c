@@ -4,8 +4,6 @@
 #include "flexbody/rod/rod_tangent.h"
 #include "flexbody/rod/rod_tangent_layout.h"
 
-#include <string.h>
-
 // -- what all directions share --------------------------------------------------------------------
 
 // Rows of 8: shape, motion and stress of eight segments.

@@ -4,8 +4,6 @@
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/section/section_axis.h"
 
-#include <string.h>
-
 // -- stiffness ------------------------------------------------------------------------------------
 
 typedef double matrix6[6][6];

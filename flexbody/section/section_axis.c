@@ -4,9 +4,6 @@
 #include "core/base/linalg.h"
 #include "core/base/schedule.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { MOST_HALVINGS = 40 };
 
 enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each interval without a station inside

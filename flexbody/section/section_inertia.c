@@ -3,8 +3,6 @@
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/section/section_axis.h"
 
-#include <string.h>
-
 // Total mass, first and second moments are exact. Of the two ways to lump a segment's mass that are so,
 //   fine:  by hat functions, where the chord carries it. Their error in the kinetic energy of bending
 //          waves, that of the trapezoidal rule for ρ w², is a difference of end values

@@ -4,10 +4,6 @@
 #include "apps/bough/analysis/air_inverse.h"
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const double same = 1e-6;        // relative distance of equal right and left eigenvalues
 static const double least_motion = 0.2; // participation of the bodies; modes with less are modes of the air
 

@@ -4,9 +4,6 @@
 
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 // A joint without stiffness has a double eigenvalue 0 with one vector. Coordinates of joints return at this
 // rate, relative to the point, which gives two vectors.
 static const double going_back = 1e-6;

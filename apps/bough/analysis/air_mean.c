@@ -1,9 +1,6 @@
 // The air's tangent of equal blades as the mean over azimuths and blades, column by column: theory (113).
 #include "apps/bough/analysis/air_tangent.h"
 
-#include <math.h>
-#include <string.h>
-
 struct bough_air_mean {
     int n_part, n_row, n_air; // blades; states of each, of its air
     const int *row;           // (n_part × n_row)

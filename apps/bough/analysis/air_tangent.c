@@ -3,9 +3,6 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/equilibrium.h"
 
-#include <math.h>
-#include <string.h>
-
 static const double difference = 1e-5;     // of a state of the members, in units of its scale
 static const double air_difference = 1e-6; // of a state of the air
 static const double rate_time = 1e-5;      // over which the rate of a state of the air is measured [s]

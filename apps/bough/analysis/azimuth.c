@@ -2,11 +2,8 @@
 #include "apps/bough/analysis/azimuth.h"
 
 #include "apps/bough/model/companion.h"
-#include "core/base/base.h"
 
 #include <complex.h>
-#include <math.h>
-#include <string.h>
 
 static const double at_rest = 1e-9;    // [rad/s]
 static const double difference = 1e-5; // of the largest entry of a vector in units of its scale

@@ -1,11 +1,7 @@
 // theory (116). The blades' states are in harmonics wherever they are not said to be of blade after blade.
 #include "apps/bough/analysis/air_inverse.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
-
-#include <math.h>
-#include <string.h>
 
 enum {
     STATES = BOUGH_ROD_STATES, // of a vertex

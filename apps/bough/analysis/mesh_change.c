@@ -4,8 +4,6 @@
 #include "core/base/linalg.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 static const double most = 0.5; // part of an eigenvector in a mode: it is that mode
 

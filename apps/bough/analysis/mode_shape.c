@@ -4,7 +4,6 @@
 #include "core/tree/dynamics.h"
 
 #include <float.h>
-#include <string.h>
 
 // A flexible beam's vertices and their tangents along the shape, as rod.h lays them out.
 typedef struct beam_shape {

@@ -5,9 +5,6 @@
 #include "apps/bough/model/companion.h"
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <stdio.h>
-
 typedef void change_section(bough_section_station *x, double change);
 typedef void change_scene(bough_scene *scene, double change);
 

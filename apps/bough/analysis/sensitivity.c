@@ -4,9 +4,6 @@
 #include "core/base/linalg.h"
 
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double difference = 1e-4; // of the largest entry of a vector in units of its scale
 static const double step = 0.1;        // of a parameter, in units of its change: polars have corners

@@ -7,10 +7,6 @@
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/equilibrium.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 // Differences: of a state in units of its scale, of an input relative to its value or to 1.
 static const double difference = 1e-5;
 

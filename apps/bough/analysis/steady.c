@@ -1,7 +1,5 @@
 #include "apps/bough/analysis/steady.h"
 
-#include <string.h>
-
 int bough_steady_rods(const bough_simulation *s) {
     int n = 0;
     for (int k = 0; k < s->n_beam; k++) n += s->beam[k].rod != NULL;

@@ -8,7 +8,6 @@
 #include "cosim/analysis/modes.h"
 
 #include <complex.h>
-#include <string.h>
 
 // Eigenvalues are sought about this point of the real axis, and several times the spin [1/s].
 static const double least_point = 1, spins = 4;

@@ -1,11 +1,6 @@
 // Reads replacements of keys and the axes of a grid, and forms the combinations of a grid.
 #include "apps/bough/cases/study.h"
 
-#include <assert.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 // -- replacements ---------------------------------------------------------------------------------
 
 // Writes a value in one line: 'text', [1, 2], {a: [1, 2]}. False if it is nested too deeply for recursion.

@@ -6,12 +6,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/recorder.h"
 #include "apps/bough/scene/scene_files.h"
-#include "core/base/base.h"
-
-#include <assert.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct case_run {
     const bough_study *study;

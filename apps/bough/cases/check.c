@@ -9,11 +9,6 @@
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/scene/scene_files.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 // -- fingerprint ----------------------------------------------------------------------------------
 
 // Adds what the study records of each run.

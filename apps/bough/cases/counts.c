@@ -1,9 +1,5 @@
 #include "apps/bough/cases/counts.h"
 
-#include "core/base/base.h"
-
-#include <string.h>
-
 // -- levels ---------------------------------------------------------------------------------------
 
 // Bits of the first value that the finest bins resolve; bits of the largest shift of a bin's number.

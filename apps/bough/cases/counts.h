@@ -6,9 +6,6 @@
 #include "apps/bough/results/recorder.h"
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 // -- levels ---------------------------------------------------------------------------------------
 
 // How long a quantity stays between levels and how often it crosses each upwards, or how many cycles have

@@ -2,9 +2,6 @@
 #include "apps/bough/cases/study.h"
 #include "apps/bough/config/schema.h"
 
-#include <math.h>
-#include <string.h>
-
 static const char speed_key[] = "aero.wind.speed", scene_key[] = "scene";
 
 // -- weights --------------------------------------------------------------------------------------

@@ -1,8 +1,5 @@
 #include "apps/bough/cases/perform.h"
 
-#include <math.h>
-#include <string.h>
-
 // Hours, or number of events, that a case represents.
 static double hours_of(const bough_study *study, int number) {
     return bough_case_weight(study, &study->cases[number], 3600);

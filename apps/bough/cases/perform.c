@@ -6,7 +6,6 @@
 #include "core/base/pool.h"
 
 #include <pthread.h>
-#include <string.h>
 
 typedef struct work {
     bough_study_results results;

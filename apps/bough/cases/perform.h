@@ -4,8 +4,6 @@
 
 #include "apps/bough/cases/case_run.h"
 
-#include <stdio.h>
-
 // -- results of cases (store.c) -------------------------------------------------------------------
 
 // The result of each case as a text file of the study's folder, cases/NAME.case, complete or absent. Its head

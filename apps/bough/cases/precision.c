@@ -4,10 +4,7 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
-#include <assert.h>
-#include <math.h>
 #include <stdarg.h>
-#include <string.h>
 
 // -- differences of series ------------------------------------------------------------------------
 

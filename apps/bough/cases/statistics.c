@@ -3,10 +3,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { PANELS = 6, VALUES = 3 }; // channels in plot.svg; minimum, maximum and mean of each
 
 // Data of a case for costs.csv and plot.svg; its mean is NaN if it failed.

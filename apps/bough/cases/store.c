@@ -3,12 +3,9 @@
 #include "apps/bough/results/folder.h"
 #include "core/base/input_file.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 // -- names ----------------------------------------------------------------------------------------

@@ -5,9 +5,6 @@
 #include "apps/bough/config/schema_keys.h"
 #include "core/base/input_file.h"
 
-#include <stdio.h>
-#include <string.h>
-
 // -- measures -------------------------------------------------------------------------------------
 
 static const char channels_form[] = "[A, B, C], or several such lists";

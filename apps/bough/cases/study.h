@@ -12,9 +12,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdint.h>
-#include <stdio.h>
-
 enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_MOST_CASES = 100000 };
 
 typedef enum bough_study_kind {

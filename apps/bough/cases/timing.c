@@ -3,10 +3,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct cell_times {
     double wall[BOUGH_STUDY_REPEATS], cpu[BOUGH_STUDY_REPEATS], ratio[BOUGH_STUDY_REPEATS]; // in each round
     double error[BOUGH_STUDY_MEASURES]; // against the reference

@@ -6,9 +6,6 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
 
-#include <math.h>
-#include <stdio.h>
-
 // -- the scene ------------------------------------------------------------------------------------
 
 // Whether the rod keeps the scene's number of segments: with a load at a vertex, or with modal pieces.

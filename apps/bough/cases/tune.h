@@ -9,8 +9,6 @@
 
 #include "apps/bough/scene/scene.h"
 
-#include <stdio.h>
-
 enum { BOUGH_TUNE_POINTS = 16 };
 
 // The settings of a run that replace those of the scene.

@@ -4,8 +4,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
-#include <math.h>
-
 // -- table ----------------------------------------------------------------------------------------
 
 // The largest number of segments of any rod.

@@ -6,9 +6,6 @@
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/validity.h"
 
-#include <math.h>
-#include <string.h>
-
 static const char *body_name(const bough_scene *scene, int body) {
     return body == BOUGH_GROUND ? "ground" : scene->body[body].name;
 }

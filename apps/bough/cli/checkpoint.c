@@ -5,8 +5,6 @@
 #include "core/base/input_file.h"
 
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 static const char name[] = "checkpoint.bin";

@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <getopt.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 
 // -- interrupts -----------------------------------------------------------------------------------
 

@@ -8,10 +8,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
-
 // In `bough --version` and summary.json; tests/cli/test_cli.sh compares it with the version of the build.
 #define BOUGH_VERSION "0.1.0"
 

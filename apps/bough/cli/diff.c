@@ -2,10 +2,6 @@
 #include "apps/bough/cli/command.h"
 #include "apps/bough/results/recorder.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 // A common channel.
 typedef struct pair {
     int first, second;     // its column in either

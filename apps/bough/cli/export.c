@@ -9,8 +9,6 @@
 #include "core/base/input_file.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 #include <zlib.h>
 

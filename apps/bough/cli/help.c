@@ -5,8 +5,6 @@
 #include "apps/bough/scene/scene.h"
 #include "cosim/scheme.h"
 
-#include <string.h>
-
 static void help_coupling(FILE *stream) {
     fprintf(stream, "simulation.coupling.scheme, the exchange between the tree and the flexible "
                     "bodies:\n");

@@ -3,8 +3,6 @@
 
 #include "apps/bough/cli/command.h"
 
-#include <string.h>
-
 enum { TRIAL_STEPS = 500 };
 
 typedef struct import_options {

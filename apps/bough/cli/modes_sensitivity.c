@@ -2,9 +2,6 @@
 #include "apps/bough/cli/modes_internal.h"
 #include "apps/bough/results/folder.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { PRINTED = 10 };
 
 // -- the mode -------------------------------------------------------------------------------------

@@ -8,10 +8,6 @@
 #include "apps/bough/results/picture.h"
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { MOST_POINTS = 500 };
 
 // Least similarity of shapes (0 to 1) of the same mode.

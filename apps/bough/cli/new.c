@@ -5,7 +5,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <string.h>
 #include <sys/stat.h>
 
 static const char *const kinds[] = {"beam", "mechanism", "turbine", NULL};

@@ -4,8 +4,6 @@
 #include "core/base/input_file.h"
 
 #include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
 
 // -- the scene of a directory ---------------------------------------------------------------------
 

@@ -3,8 +3,6 @@
 
 #include "apps/bough/cli/command.h"
 
-#include <math.h>
-
 typedef struct report_options {
     bough_options common;
     struct moment {

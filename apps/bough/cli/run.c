@@ -6,7 +6,6 @@
 #include "apps/bough/results/progress.h"
 #include "apps/bough/results/recorder.h"
 
-#include <math.h>
 #include <sys/statvfs.h>
 
 // -- forecast -------------------------------------------------------------------------------------

@@ -9,8 +9,6 @@
 #include "apps/bough/results/recorder.h"
 #include "apps/bough/results/summary.h"
 
-#include <stdint.h>
-
 typedef struct bough_checkpoint {
     double interval;         // [s]; 0: none are written
     uint64_t program, input; // fingerprints

@@ -5,8 +5,6 @@
 #include "apps/bough/results/summary.h"
 #include "core/base/level.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <sys/resource.h>
 
 enum { LINE = 400, WORST = 3 };

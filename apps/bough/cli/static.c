@@ -8,10 +8,6 @@
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 typedef struct equilibrium {
     bough_simulation *simulation;
     bool finer;                  // of the finer mesh with which the scene's is compared

@@ -3,8 +3,6 @@
 
 #include "apps/bough/cli/command.h"
 
-#include <math.h>
-
 typedef struct tune_options {
     bough_options common;
     bough_tune_options how; // span 0: the default

@@ -2,7 +2,6 @@
 
 #include "core/base/quote.h"
 
-#include <string.h>
 #include <sys/stat.h>
 
 enum { MOST_BASES = 8, PATH = 200 };

@@ -4,9 +4,6 @@
 
 #include "core/base/input_file.h"
 
-#include <assert.h>
-#include <string.h>
-
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
 // Without those of values that do not increase, which leave checks across keys possible.

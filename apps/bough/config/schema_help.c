@@ -3,8 +3,6 @@
 
 #include "core/base/quote.h"
 
-#include <string.h>
-
 static const char *const kind_names[] = {
     [BOUGH_KEY_NUMBER] = "number",
     [BOUGH_KEY_INTEGER] = "whole number",

@@ -4,8 +4,6 @@
 
 #include "apps/bough/config/schema.h"
 
-#include <stddef.h>
-
 #define AT(member) .offset = offsetof(FILLS, member)
 #define COUNT_AT(member) .count_offset = offsetof(FILLS, member)
 

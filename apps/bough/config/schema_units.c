@@ -3,12 +3,6 @@
 // prefixes and whole exponents: "MN m", "kg/m^3", "rad/s".
 #include "apps/bough/config/schema.h"
 
-#include "core/base/base.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { N_BASE = BOUGH_BASE_UNITS };
 
 typedef struct unit {

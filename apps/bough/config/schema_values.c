@@ -1,11 +1,7 @@
 // Reading one value by its key: numbers, texts, choices, lists of them. Errors name the path.
 #include "apps/bough/config/schema.h"
 
-#include <assert.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
 enum { MAX_CHOICES = 32 };  // of a key

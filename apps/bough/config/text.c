@@ -8,8 +8,6 @@
 #include <yaml.h>
 
 #include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
     MAX_BYTES = 16 * 1024 * 1024,

@@ -8,10 +8,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
-
 typedef enum bough_node_kind {
     BOUGH_SCALAR,
     BOUGH_SEQUENCE,

@@ -7,12 +7,7 @@
 #include "apps/bough/exchange/bough.h"
 #include "apps/bough/model/fmi3.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 // NOLINTBEGIN(readability-function-size): FMI fixes the parameters
 

@@ -4,10 +4,6 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/scene/scene_files.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { ERROR_TEXT = 2000 };
 
 struct bough_session {

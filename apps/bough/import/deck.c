@@ -4,11 +4,7 @@
 #include "core/base/input_file.h"
 
 #include <dirent.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 #include <unistd.h>
 

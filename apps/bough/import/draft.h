@@ -9,9 +9,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stddef.h>
-#include <stdio.h>
-
 typedef enum bough_import_file {
     BOUGH_IMPORT_SCENE,
     BOUGH_IMPORT_BLADE,

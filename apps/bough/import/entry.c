@@ -1,12 +1,9 @@
 #include "apps/bough/import/windio.h"
 
 #include "apps/bough/config/schema.h"
-#include "core/base/base.h"
 #include "core/base/schedule.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MOST = 4000, PATH = 200 };
 

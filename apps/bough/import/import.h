@@ -4,9 +4,6 @@
 
 #include "core/base/status.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 // What the user adds to a model or takes in place of its own; NULL: as the model has it.
 typedef struct bough_import_options {
     const char *wind;              // file of the wind

@@ -3,8 +3,6 @@
 
 #include "apps/bough/import/openfast.h"
 
-#include <string.h>
-
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
     bough_deck *deck = bough_deck_open(o->draft->arena, path, BOUGH_DECK_HEADING, o->draft->status);

@@ -8,8 +8,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-
 // -- the format (deck.c) --------------------------------------------------------------------------
 
 // Input files of OpenFAST as lines "value  Name  - comment", in which values are found by name and tables by

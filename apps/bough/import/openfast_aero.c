@@ -1,9 +1,6 @@
 // AeroDyn 15: airfoils, blade elements, options of the theory, tower.
 #include "apps/bough/import/openfast.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { MOST_AIRFOILS = 200, MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
 
 // -- airfoils -------------------------------------------------------------------------------------

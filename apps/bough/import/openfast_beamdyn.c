@@ -2,8 +2,6 @@
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/section.h"
 
-#include <math.h>
-
 static const double close_enough = 1e-4; // of fractions of the length
 
 enum { MOST = 1000, MATRIX = BOUGH_IMPORT_MATRIX, STATION = 1 + 2 * MATRIX };

@@ -3,9 +3,6 @@
 
 #include "aero/control/discon.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- limits ---------------------------------------------------------------------------------------
 
 // Limits of the numbers of all decks, each in the unit of its line: no two decks use one name for two

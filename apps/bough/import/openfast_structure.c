@@ -4,9 +4,6 @@
 #include "apps/bough/import/section.h"
 #include "core/base/schedule.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { MOST = 1000, GRID = 400, FIRST = 2, COEFFICIENTS = 5 };
 
 // E/ρ [m²/s²] where the deck has no axial stiffness: of a blade's laminates, of steel with paint,

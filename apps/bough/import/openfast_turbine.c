@@ -1,9 +1,6 @@
 // ElastoDyn: bodies and joints.
 #include "apps/bough/import/openfast.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- tower and nacelle ----------------------------------------------------------------------------
 
 static void put_tower(bough_openfast *o, double top_mass) {

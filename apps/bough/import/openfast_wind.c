@@ -2,8 +2,6 @@
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/wind.h"
 
-#include <math.h>
-
 enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
 
 // -- which file -----------------------------------------------------------------------------------

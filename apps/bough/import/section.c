@@ -3,8 +3,6 @@
 #include "core/base/linalg.h"
 #include "core/base/schedule.h"
 
-#include <math.h>
-
 static void put_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
     double entry[21];
     bool diagonal = true;

@@ -6,9 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 enum { BOUGH_IMPORT_MATRIX = 36 };
 
 // Whether a scene accepts both matrices: stiffness and inertia about the centre of mass positive definite.

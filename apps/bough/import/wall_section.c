@@ -2,9 +2,6 @@
 
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 // A wall as a line in the middle of its shear stiffness.
 typedef struct line {
     double length, normal[2]; // [m]; to the left of its direction

@@ -1,13 +1,9 @@
 #include "apps/bough/import/wind.h"
 
 #include "aero/wind/wind_hub.h"
-#include "core/base/base.h"
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 enum { PATH = 1024, LINE = 1024, MOST_POINTS = 100000000, MOST_GRID = 4096 };

@@ -2,10 +2,6 @@
 #include "apps/bough/import/windio.h"
 
 #include "apps/bough/import/import.h"
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
 
 static const double duration = 20; // [s]: the file has none
 

@@ -8,8 +8,6 @@
 #include "apps/bough/import/draft.h"
 #include "apps/bough/import/import.h"
 
-#include <stdbool.h>
-
 // -- entries of a WindIO file (entry.c) -----------------------------------------------------------
 
 // Values of a YAML file by the path of their keys, "blade.outer_shape|outer_shape_bem.chord": words

@@ -1,9 +1,5 @@
 // Airfoils with their polars, and the blade elements, whose polars are mixtures of two airfoils.
 #include "apps/bough/import/windio.h"
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { NAME = BOUGH_AIRFOIL_NAME, POLAR = BOUGH_POLAR_COLUMNS };
 

@@ -5,8 +5,6 @@
 #include "apps/bough/import/windio.h"
 #include "core/base/linalg.h"
 
-#include <math.h>
-
 enum { ENTRIES = 21, MATRIX = BOUGH_IMPORT_MATRIX };
 
 // Damping times where the file has none [s]: a few tenths of a percent in the first modes.

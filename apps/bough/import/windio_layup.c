@@ -2,12 +2,7 @@
 // walls.
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
-#include "core/base/base.h"
 #include "core/base/linalg.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 // -- outlines of sections -------------------------------------------------------------------------
 

@@ -1,8 +1,6 @@
 // The blade's shape: chord, twist, position of the axis, airfoils.
 #include "apps/bough/import/windio.h"
 
-#include <math.h>
-
 enum { MOST_AIRFOILS = 200 };
 
 // -- places ---------------------------------------------------------------------------------------

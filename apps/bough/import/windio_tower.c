@@ -2,9 +2,6 @@
 // rigid.
 #include "apps/bough/import/section.h"
 #include "apps/bough/import/windio.h"
-#include "core/base/base.h"
-
-#include <math.h>
 
 enum { MOST_LAYERS = 20 };
 

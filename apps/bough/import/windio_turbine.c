@@ -2,10 +2,6 @@
 #include "aero/control/discon.h"
 #include "apps/bough/import/wind.h"
 #include "apps/bough/import/windio.h"
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
 
 // A rigid body's mass properties in the axes of its frame.
 typedef struct lump {

@@ -1,10 +1,6 @@
 #include "apps/bough/model/aero_link.h"
 
-#include "core/base/base.h"
 #include "core/base/schedule.h"
-
-#include <math.h>
-#include <string.h>
 
 struct bough_aero_link {
     bough_simulation *simulation;

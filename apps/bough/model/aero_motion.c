@@ -2,9 +2,6 @@
 
 #include "core/base/rotation.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { CALLS = 3 }; // stored: the motion is extrapolated by a parabola
 
 // A blade's state: its rows, velocity and angular velocity of its frame, hub and shaft in the frame (of

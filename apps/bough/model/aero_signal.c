@@ -3,9 +3,6 @@
 #include "aero/rotor/rotor.h"
 #include "flexbody/rod/rod_load.h"
 
-#include <math.h>
-#include <string.h>
-
 // The signal between two samples. F are the loads at the next sample for the predicted motion, S their
 // derivatives with respect to the motion of the vertices. Between the samples F − S·motion follows the
 // parabola through its last three values, and a rod adds S·motion as it moves: damping and stiffness of the

@@ -2,8 +2,6 @@
 
 #include "apps/bough/model/section_loads.h"
 
-#include <string.h>
-
 static const double even = 1e-6; // [rad]
 
 // In [0, 2π).

@@ -4,8 +4,6 @@
 #include "core/base/rotation.h"
 #include "flexbody/section/section.h"
 
-#include <string.h>
-
 // -- joints ---------------------------------------------------------------------------------------
 
 // The frame of the joint in the body of the tree that carries it: from x, where bodies hang on the parent, by

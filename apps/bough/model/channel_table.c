@@ -1,7 +1,5 @@
 #include "apps/bough/model/channel_table.h"
 
-#include <string.h>
-
 // clang-format off
 // A channel without OpenFAST's name, and with it; the same as component i of a vector, from 1. Three channels along or
 // about x, y and z, with small letters in their names and with capitals; `text` and `after` enclose the axis.

@@ -5,8 +5,6 @@
 
 #include "apps/bough/results/channels.h"
 
-#include <stdio.h>
-
 typedef struct bough_channel_row {
     const char *name; // "{a}" and "{b}" are replaced by the first and the second part
     const char *unit;

@@ -5,10 +5,6 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/fmu_instance.h"
 #include "apps/bough/model/simulation.h"
-#include "core/base/base.h"
-
-#include <math.h>
-#include <string.h>
 
 // State of an event. Doubles only: a copy has no padding.
 typedef struct event_state {

@@ -1,7 +1,5 @@
 #include "apps/bough/model/aero_link.h"
 
-#include <string.h>
-
 // The tower's forces are on vertices in the body's axes, (3 × vertices) of a rod, or the resultant
 // (6) on a rigid body; then come the hub's, (6) in the rotor's axes.
 struct bough_drag_link {

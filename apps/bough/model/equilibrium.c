@@ -4,9 +4,6 @@
 #include "apps/bough/model/section_loads.h"
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 bool bough_rods_are_independent(const bough_simulation *s) { return s->tree->n_v == 0 && s->aero == NULL; }
 
 double bough_equilibrium_time(const bough_simulation *s) {

@@ -3,9 +3,6 @@
 #include "cosim/analysis/modes.h"
 #include "flexbody/rod/rod_system.h"
 
-#include <math.h>
-#include <string.h>
-
 // Points of the real axis near which growing eigenvalues of the Jacobian are searched for, in units of 1 over
 // the scene's time. Values below this fraction of a point, or above its inverse, are rounding.
 static const double point[] = {1, 10, 100, 1000}, rounded = 1e-3;

@@ -4,10 +4,6 @@
 #include "core/tree/dynamics.h"
 #include "flexbody/rod/rod_static.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 enum { SAMPLES = 60 }; // of the air, most
 
 // Smaller changes between samples of the air end the search, in units of the states' scales.

@@ -4,8 +4,6 @@
 
 #include "core/tree/dynamics.h"
 
-#include <math.h>
-
 // Length and time for which the scales of the states and the constants of the search are chosen [m], [s].
 static const double usual_length = 500, usual_time = 8;
 

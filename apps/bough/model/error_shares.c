@@ -5,9 +5,6 @@
 #include "apps/bough/results/progress.h"
 #include "cosim/scheme.h"
 
-#include <math.h>
-#include <stdio.h>
-
 const char *bough_error_share_name(bough_error_share_kind kind) {
     static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
     return names[kind];

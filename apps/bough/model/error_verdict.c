@@ -1,9 +1,5 @@
 #include "apps/bough/model/error_verdict.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static const double rounding = 1e-6;    // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range of that kind
 static const double least_turn = 1e-3,

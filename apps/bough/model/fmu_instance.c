@@ -2,8 +2,6 @@
 
 #include <dlfcn.h>
 #include <limits.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 #if defined __x86_64__

@@ -2,8 +2,6 @@
 
 #include "apps/bough/model/fmu_instance.h"
 
-#include <string.h>
-
 enum { MOST_STATES = 8 };
 
 typedef struct fmu_member {

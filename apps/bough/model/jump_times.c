@@ -1,9 +1,6 @@
 // Times at which loads and prescribed motions of joints jump, by tables and ramps of the scene.
 #include "apps/bough/model/companion.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 // Values over time: of a load or of a motion.
 typedef struct table {
     int n;

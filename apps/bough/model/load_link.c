@@ -4,9 +4,6 @@
 
 #include "flexbody/rod/rod_load.h"
 
-#include <math.h>
-#include <string.h>
-
 static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_model *m) {
     switch ((bough_scene_load_place)load->place) {
     case BOUGH_SCENE_AT_VERTEX: return (bough_rod_reach){m->span[load->vertex], m->span[load->vertex]};

@@ -8,9 +8,6 @@
 #include "core/tree/force.h"
 #include "core/tree/loop.h"
 
-#include <stdio.h>
-#include <string.h>
-
 // Adds the channels of the n parts of a kind. A part has the name that name() returns (NULL: it has no
 // channels) or, without name(), its number. They form a group with the function `sample`; NULL: they belong
 // to the last group.

@@ -5,8 +5,6 @@
 #include "core/base/linalg.h"
 #include "core/tree/loop.h"
 
-#include <stdio.h>
-
 // -- sections -------------------------------------------------------------------------------------
 
 // A place on a rod: within a segment, at a fraction of its length.

@@ -6,8 +6,6 @@
 #include "core/tree/loop.h"
 #include "flexbody/rod/rod_tangent.h"
 
-#include <string.h>
-
 void bough_simulation_update(bough_simulation *s) {
     bough_tree_kinematics(s->tree, s->leader.state, s->view);
     *s->accelerated = (double)NAN;

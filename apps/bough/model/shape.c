@@ -1,7 +1,5 @@
 #include "apps/bough/model/shape.h"
 
-#include <string.h>
-
 enum { RIGID_POINTS = 3 };
 
 void bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {

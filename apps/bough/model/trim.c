@@ -2,9 +2,6 @@
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/control_link.h"
-#include "core/base/base.h"
-
-#include <math.h>
 
 enum { MOST_TRIES = 60 };
 

@@ -5,10 +5,6 @@
 #include "core/tree/loop.h"
 #include "cosim/whole.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 // Mach number of half: incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
 static const double most_over_rated = 2;

@@ -1,14 +1,7 @@
 #include "apps/bough/results/channels.h"
 
-#include "core/base/base.h"
-
-#include <assert.h>
 #include <fnmatch.h>
 #include <stdarg.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 
 bough_channels bough_channels_start(bough_arena *arena) {
     const double **known = bough_arena_take(arena, sizeof *known);

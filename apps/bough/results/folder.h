@@ -6,8 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdio.h>
-
 enum { BOUGH_PATH_MAX = 4096 };
 
 // Makes the folder and its missing parents. Refuses a path that is taken by a file, or a folder

@@ -1,8 +1,6 @@
 #include "apps/bough/results/frames.h"
 
 #include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 struct bough_frames {

@@ -1,7 +1,5 @@
 #include "apps/bough/results/picture.h"
 
-#include <math.h>
-
 // -- text -----------------------------------------------------------------------------------------
 
 void bough_picture_begin(FILE *svg, int width, int height) {

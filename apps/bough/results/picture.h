@@ -4,9 +4,6 @@
 
 #include "core/base/arena.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 // Begins a picture [px]; "</svg>" ends it. The classes grid, axis and weak (text) have their own colours;
 // other texts and shapes without a fill have the colour of text.
 void bough_picture_begin(FILE *svg, int width, int height);

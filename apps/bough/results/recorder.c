@@ -1,13 +1,7 @@
 #include "apps/bough/results/recorder.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <float.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -12,9 +12,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 typedef struct bough_recorder bough_recorder;
 
 typedef struct bough_recorder_def {

@@ -6,8 +6,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 #include <sys/stat.h>
 
 bough_status bough_report_open(const char *folder, const char *name, FILE **file) {

@@ -6,9 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 // The page with a line "@DATA@" where the data go; ends with a zero.
 extern const unsigned char bough_report_page[];
 

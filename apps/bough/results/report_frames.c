@@ -6,9 +6,6 @@
 #include "apps/bough/results/picture.h"
 #include "core/base/vec3.h"
 
-#include <math.h>
-#include <string.h>
-
 // A frame as apps/bough/results/frames.c has written it.
 typedef struct stored_frame {
     double time; // [s]

@@ -5,9 +5,6 @@
 #include "core/base/bytes.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 // -- rows -----------------------------------------------------------------------------------------
 

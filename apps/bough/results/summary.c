@@ -2,10 +2,6 @@
 
 #include "core/base/quote.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdlib.h>
-
 static void indent(bough_summary *s) { fprintf(s->file, "\n%*s", 2 * s->depth, ""); }
 
 // The comma, the line and the key before a value.

@@ -5,9 +5,6 @@
 
 #include "apps/bough/results/folder.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-
 typedef struct bough_summary {
     FILE *file;
     char path[BOUGH_PATH_MAX];

@@ -8,9 +8,6 @@
 #include <errno.h>
 #include <ftw.h>
 #include <limits.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <zlib.h>
 

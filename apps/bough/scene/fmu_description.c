@@ -5,8 +5,6 @@
 #include "core/base/input_file.h"
 
 #include <expat.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct reader {
     bough_arena *arena;

@@ -2,9 +2,6 @@
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
-#include <stdio.h>
-#include <string.h>
-
 // -- bodies ---------------------------------------------------------------------------------------
 
 bool bough_scene_carries(const bough_scene *s, int carrier, int body) {

@@ -22,10 +22,6 @@
 #include "cosim/scheme.h"
 #include "flexbody/section/section.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-
 typedef struct bough_scene_coupling {
     const bough_node *node;
     int scheme;                   // place in the table of schemes: bough_scheme_name

@@ -3,8 +3,6 @@
 // are measured on the turbines of apps/turbine and on random scenes (docs/coupling.md).
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
-
 static const double usual = 0.005; // accuracy for which the following values are given
 
 // -- tolerances -----------------------------------------------------------------------------------

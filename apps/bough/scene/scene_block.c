@@ -4,9 +4,6 @@
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
-#include <stdio.h>
-#include <string.h>
-
 typedef struct block {
     const bough_node *node;
     int n_blade;

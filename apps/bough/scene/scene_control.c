@@ -1,8 +1,6 @@
 // The keys of a turbine's controller.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
-
 // clang-format off
 
 // The constants of the law; the defaults are those of the NREL 5 MW turbine.

@@ -5,9 +5,6 @@
 
 #include <dirent.h>
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { MOST_DEPTH = 16 }; // of folders: a link may lead to a folder above it

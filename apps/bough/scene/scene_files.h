@@ -4,8 +4,6 @@
 
 #include "apps/bough/scene/scene.h"
 
-#include <stdint.h>
-
 typedef struct bough_scene_file {
     const char *key;  // key that names the file, "control.library"; "" for the scene itself
     const char *path; // as it is opened

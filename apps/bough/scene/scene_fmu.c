@@ -2,8 +2,6 @@
 #include "apps/bough/scene/scene_internal.h"
 #include "cosim/master.h"
 
-#include <string.h>
-
 // -- one FMU --------------------------------------------------------------------------------------
 
 static const char *const usual_motion[BOUGH_SCENE_MOTION] = {"vx", "vy", "vz", "wx", "wy",

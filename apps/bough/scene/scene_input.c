@@ -1,8 +1,6 @@
 // Inputs: named values that another program sets between steps.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <string.h>
-
 static bough_scene_input *add(bough_scene *s, const bough_node *node, const char *name,
                               bough_scene_input_kind kind) {
     bough_scene_input *input = &s->input[s->n_input++];

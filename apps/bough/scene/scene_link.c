@@ -3,11 +3,7 @@
 // second error.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
 void bough_link_at(bough_schema_reader *r, const char *format, ...) {
     va_list arguments;

@@ -2,9 +2,6 @@
 #include "aero/control/discon.h"
 #include "apps/bough/scene/scene_internal.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- turbine --------------------------------------------------------------------------------------
 
 static bool is_listed_before(const bough_scene_turbine *t, int k) {

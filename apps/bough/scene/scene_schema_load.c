@@ -1,8 +1,6 @@
 // The keys of loads, springs, bushings, closures, markers, sensors and turbine, and the checks of loads.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <string.h>
-
 // -- reading --------------------------------------------------------------------------------------
 
 // field: the load

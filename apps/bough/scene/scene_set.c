@@ -3,9 +3,6 @@
 #include "apps/bough/config/base.h"
 #include "apps/bough/scene/scene_internal.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 enum { PATH = 200, MAX_STEPS = 32 };
 
 static const char origin[] = "--set"; // in place of a file's name

@@ -1,12 +1,8 @@
 // Readers of placements, matrices and tables, and checks within one mapping.
 #include "apps/bough/scene/scene_internal.h"
 
-#include "core/base/base.h"
 #include "core/base/linalg.h"
 #include "core/base/rotation.h"
-
-#include <math.h>
-#include <string.h>
 
 // -- placement ------------------------------------------------------------------------------------
 

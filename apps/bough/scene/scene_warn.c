@@ -5,7 +5,6 @@
 #include "cosim/scheme.h"
 
 #include <stdarg.h>
-#include <string.h>
 
 static void warn(const bough_node *at, FILE *stream, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
