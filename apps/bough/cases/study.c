@@ -212,13 +212,7 @@ static const bough_schema set_schema = {.name = "a load set", .check = check_set
 // -- help -----------------------------------------------------------------------------------------
 
 void bough_study_help(FILE *stream) {
-    fputs("# Studies\n\n"
-          "A study is a YAML file that names a scene and the runs of that scene. `bough study STUDY` "
-          "performs the runs. Keys in\nbraces are keys of the scene, written as for `--set`; values "
-          "are written as in scenes. Tutorials:\n[studies](tutorials/study.md), "
-          "[load sets](tutorials/loads.md).\n"
-          "\n## work-precision, timing, stability\n\n",
-          stream);
+    fputs((const char *)bough_study_help_text, stream);
     bough_schema_help(&study_schema, 0, stream);
     fputs("\n## sweep\n\n", stream);
     bough_schema_help(&sweep_schema, 0, stream);

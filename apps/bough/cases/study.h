@@ -166,7 +166,8 @@ typedef struct bough_study {
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads, bough_errors *errors,
                               bough_study **study);
 
-// Writes every key of a study, as Markdown and as JSON Schema.
+// Writes every key of a study, as Markdown, which begins with study_help.md, and as JSON Schema.
+extern const unsigned char bough_study_help_text[];
 void bough_study_help(FILE *stream);
 void bough_study_json_schema(FILE *stream);
 

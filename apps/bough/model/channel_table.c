@@ -207,16 +207,6 @@ static void print_family(const bough_channel_family *f, FILE *stream) {
 }
 
 void bough_channel_table_help(FILE *stream) {
-    fputs(
-        "# Channels\n\n"
-        "This page lists all channels that a run records in `channels.out`, by part of the scene. "
-        "`bough check SCENE` prints\ntheir number; `simulation.output.channels` selects some of "
-        "them. Ground axes have z up. The blade's axes are those of\nits body: z runs from root to "
-        "tip, and the axes turn with the pitch. The last column has OpenFAST's name of the "
-        "same\nquantity. Where OpenFAST has small angles or a straight blade, the two agree to first order: "
-        "displacements count\nfrom the undeformed blade, bent or not, and rotations are rotation vectors. "
-        "The nacelle's forces on the tower's top\nare of all that the scene puts there, also of the "
-        "yaw bearing. Root loads of a\nrigid blade on which other bodies, springs, closures or loads act are zero.\n",
-        stream);
+    fputs((const char *)bough_channel_help_text, stream);
     for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&bough_channel_families[i], stream);
 }

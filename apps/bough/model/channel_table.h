@@ -67,7 +67,8 @@ void bough_channel_family_add(bough_channels *list, bough_channel_part part, con
 void bough_channel_group_add(bough_channels *list, bough_channel_sample *sample, void *self,
                              bough_channel_part part);
 
-// Writes all of them as Markdown.
+// Writes all of them as Markdown, after the text of channel_help.md.
+extern const unsigned char bough_channel_help_text[];
 void bough_channel_table_help(FILE *stream);
 
 #endif

@@ -461,7 +461,6 @@ typedef enum bough_scene_modes_air {
 } bough_scene_modes_air;
 
 // Settings of `bough modes`, which a run ignores.
-// Settings of `bough modes`, which a run ignores.
 typedef struct bough_scene_modes {
     const bough_node *node;
     int of;                 // bough_scene_modes_of

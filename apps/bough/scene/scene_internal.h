@@ -15,6 +15,10 @@ extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema, bou
     bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema,
     bough_scene_block_schema, bough_scene_aero_schema, bough_scene_control_schema;
 
+// The page about scenes before its list of keys, scene_help.md with a line "@UNITS@" where the list of units
+// goes.
+extern const unsigned char bough_scene_help_text[];
+
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);

@@ -220,72 +220,12 @@ const bough_schema bough_scene_schema = {.name = "a scene", KEYS(
 #undef FILLS
 // clang-format on
 
-static const char example[] =
-    "    title: A bar that swings from a bearing and bends\n"
-    "    simulation: {duration: 2 s, macro_step: 10 ms, output: {interval: 20 ms}}\n"
-    "    bodies:\n"
-    "      - name: hinge\n"
-    "        fidelity: rigid\n"
-    "        mass: 1 kg\n"
-    "        inertia: [0.1, 0.1, 0.1]\n"
-    "        joint: {kind: revolute, parent: ground, axis: y, angle: 90 deg}\n"
-    "      - name: bar\n"
-    "        fidelity: rod\n"
-    "        joint: {kind: fixed, parent: hinge}\n"
-    "        rod:\n"
-    "          length: 2 m\n"
-    "          segments: 8\n"
-    "          stiffness: [1e5, 1e5, 3e5, 20, 20, 15]\n"
-    "          mass: [0.8, 0, 0, 5e-5, 5e-5, 0]\n";
-
 void bough_scene_help(FILE *stream) {
-    fputs("# Scenes\n\nThis page lists all keys of a scene. A scene is a YAML file. Paths of files are "
-          "relative to it. Values are SI\nnumbers or have a unit:\n\n",
-          stream);
+    static const char mark[] = "@UNITS@\n";
+    const char *text = (const char *)bough_scene_help_text, *units = strstr(text, mark);
+    fprintf(stream, "%.*s", (int)(units - text), text);
     bough_schema_help_units(stream);
-    fputs("\nAn angle or an angular speed that is not 0 needs its unit.\n\n"
-          "A list of mappings with the same keys may be written as a table. A unit after the name of "
-          "a column applies to\nall numbers of the column:\n\n"
-          "    stations:\n"
-          "      columns: [span, twist deg, chord]\n"
-          "      rows:\n"
-          "        - [0, 13.3, 3.5]\n"
-          "        - [10, 11.5, 4.6]\n",
-          stream);
-    fputs(
-        "\n## On another scene\n\n"
-        "`base: FILE` names a scene on which this one builds; the file has only what differs. A mapping changes the keys\n"
-        "that it has. A list of mappings with names changes the items of those names and appends others; a mapping in\n"
-        "its place has the names as keys. `null` removes a key or an item, in `--set` too. Any other value replaces the\n"
-        "base's. Paths are relative to the file in which they stand. `bough check --full SCENE` prints the whole scene.\n\n"
-        "    base: runup.yaml\n"
-        "    simulation: {macro_step: 10 ms, micro: null}\n"
-        "    bodies: {blade1: {pitch: 3 deg}, blade2: {pitch: 3 deg}, blade3: {pitch: 3 deg}}\n"
-        "    aero: {wind: {speed: 12 m/s}}\n",
-        stream);
-    fputs(
-        "\n## A turbine in one block\n\n"
-        "`turbine` with a number of blades stands for the bodies `tower`, `nacelle`, `hub`, `blade1`, `blade2`, ... and\n"
-        "their joints. Its keys for a part change or add keys of that body; `bodies` changes one of them by its\n"
-        "name and adds others; `--set 'turbine.cone=3 deg'` and `--set 'bodies[blade2].pitch=1 deg'` both work.\n"
-        "`bough check --full SCENE` prints the bodies.\n\n"
-        "    turbine:\n"
-        "      blades: 3\n"
-        "      tower_height: 87.6 m\n"
-        "      shaft_height: 1.96256 m\n"
-        "      tilt: 5 deg\n"
-        "      overhang: 5.0191 m\n"
-        "      cone: 2.5 deg\n"
-        "      hub_radius: 1.5 m\n"
-        "      pitch: 6.5 deg\n"
-        "      speed: 0.5 rad/s\n"
-        "      nacelle: {mass: 240 t, centre_of_mass: [1.9, 0, 1.75]}\n"
-        "      hub: {mass: 56780 kg, inertia: [5.1414234e6, 2.6e6, 2.6e6]}\n"
-        "      blade: {rod: {table: blade-structure.yaml, segments: 24}}\n",
-        stream);
-    fputs("\n## An example\n\n", stream);
-    fputs(example, stream);
-    fputs("\n## Keys\n\n", stream);
+    fputs(units + sizeof mark - 1, stream);
     bough_schema_help(&bough_scene_schema, 0, stream);
 }
 

@@ -203,7 +203,6 @@ typedef struct column_end {
 } column_end;
 
 // Whether it is, to 1e-6 of its unit; false after an error.
-// Whether it is, to 1e-6 of its unit; false after an error.
 static bool check_end(bough_schema_reader *r, const column_end *c, const bough_node *owner,
                       const bough_node *row, int i, double value) {
     if (fabs(value - c->expected) <= 1e-6 * c->unit) return true;
