@@ -252,11 +252,10 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench);
 
-// The wrench on what moves the last vertex of a rod that carries bodies (6), without the vertex'
-// inertia and weight: force in BRF axes, moment in section axes.
-void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                          const double *state, const double *input, bough_rod_scratch *scratch,
-                          double *wrench);
+// Of a rod that carries bodies the root wrench, and that on what moves its last vertex, without the vertex'
+// inertia and weight: force in BRF axes, moment in section axes (6 each).
+void bough_rod_wrenches(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
+                        const double *input, bough_rod_scratch *scratch, double *wrench);
 
 // Both where scratch has the forces and loads of a derivative.
 void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
@@ -282,7 +281,7 @@ BOUGH_DECLARE_LEVELS(bough_rod_load);
 BOUGH_DECLARE_LEVELS(bough_rod_derivative);
 BOUGH_DECLARE_LEVELS(bough_rod_derivative_again);
 BOUGH_DECLARE_LEVELS(bough_rod_root_wrench);
-BOUGH_DECLARE_LEVELS(bough_rod_end_wrench);
+BOUGH_DECLARE_LEVELS(bough_rod_wrenches);
 BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
 #define bough_rod_gather(m, ...) BOUGH_OF_LEVEL(bough_rod_gather, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_forces(m, ...) BOUGH_OF_LEVEL(bough_rod_forces, (m)->level)(m, __VA_ARGS__)
@@ -291,7 +290,7 @@ BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
 #define bough_rod_derivative_again(m, ...)                                                                   \
     BOUGH_OF_LEVEL(bough_rod_derivative_again, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_root_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_root_wrench, (m)->level)(m, __VA_ARGS__)
-#define bough_rod_end_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_end_wrench, (m)->level)(m, __VA_ARGS__)
+#define bough_rod_wrenches(m, ...) BOUGH_OF_LEVEL(bough_rod_wrenches, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_line_strain(m, ...) BOUGH_OF_LEVEL(bough_rod_line_strain, (m)->level)(m, __VA_ARGS__)
 
 #endif

@@ -150,9 +150,9 @@ static void add_line_moments_of(const bough_rod_model *m, int n, bough_rod_scrat
     }
 }
 
-// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and their moments
-// on the axis.
-static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+// Adds D q of the ramped loads along every step-th segment, the dead ones turned into their middles, and
+// their moments on the axis.
+static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t, int step,
                       bough_rod_scratch *scratch) {
     int s = m->stride;
     size_t bytes = 6 * (size_t)s * sizeof(double);
@@ -164,7 +164,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         double factor = bough_schedule_at(&l->schedule, t);
         if (!l->along) continue;
-        for (int n = 0; n < m->n_segment; n++) {
+        for (int n = 0; n < m->n_segment; n += step) {
             // q in the axes of the middle: force, moment and their slopes
             bough_mat3 r = shape_at(m, scratch, n).r;
             bough_vec3 q[4];
@@ -181,7 +181,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
             lane_add(scratch->own_rest + 3 * s, s, n, e.u);
         }
     }
-    for (int n = 0; n < m->n_segment; n++) add_line_moments_of(m, n, scratch);
+    for (int n = 0; n < m->n_segment; n += step) add_line_moments_of(m, n, scratch);
 }
 
 // e⁰ + D q of loads along the segments, `elapsed` after they were set.
@@ -216,7 +216,9 @@ static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, 
     }
 }
 
-void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, bough_rod_scratch *scratch) {
+// Loads on all vertices, and along every step-th segment.
+static void load_segments(const bough_rod_model *m, const bough_rod_loads *loads, double t, int step,
+                          bough_rod_scratch *scratch) {
     // sampled loads on the vertices; all that bough_rod_vertex_rows took: whole registers
     double elapsed = t - loads->start;
     const double *restrict value = loads->value, *restrict rate = loads->rate;
@@ -235,14 +237,18 @@ void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, 
     // loads on a schedule
     if (loads->ramped == NULL) return;
     add_ramped(m, loads, t, scratch);
-    if (loads_lie_along(loads)) add_along(m, loads, t, scratch);
+    if (loads_lie_along(loads)) add_along(m, loads, t, step, scratch);
 }
 
-// The same for one vertex and one segment.
+void AT(load)(const bough_rod_model *m, const bough_rod_loads *loads, double t, bough_rod_scratch *scratch) {
+    load_segments(m, loads, t, 1, scratch);
+}
+
+// The same for one vertex and one segment, the first or the last; of ramped loads for both.
 static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, double t, int vertex,
                      int segment, bough_rod_scratch *scratch) {
     if (loads->ramped != NULL) {
-        AT(load)(m, loads, t, scratch);
+        load_segments(m, loads, t, m->n_segment > 1 ? m->n_segment - 1 : 1, scratch);
         return;
     }
     double elapsed = t - loads->start;
@@ -406,12 +412,16 @@ void AT(root_wrench)(const bough_rod_model *m, const bough_rod_loads *loads, dou
     bough_rod_present_root_wrench(m, scratch, wrench);
 }
 
-void AT(end_wrench)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
-                    const double *input, bough_rod_scratch *scratch, double *wrench) {
+void AT(wrenches)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
+                  const double *input, bough_rod_scratch *scratch, double *wrench) {
     int end = m->n_segment;
     gather_input(m, input, scratch);
+    gather_state(m, state, 1, 1, scratch->vertex);
     gather_state(m, state, m->n, m->n, scratch->vertex);
-    load_end(m, loads, t, end, end - 1, scratch);
+    load_end(m, loads, t, 0, 0, scratch);
+    if (loads->ramped == NULL) load_end(m, loads, t, end, end - 1, scratch); // else both are loaded
+    AT(forces)(m, 0, 1, scratch);
     AT(forces)(m, end - 1, end, scratch);
-    bough_rod_present_end_wrench(m, scratch, wrench);
+    bough_rod_present_root_wrench(m, scratch, wrench);
+    bough_rod_present_end_wrench(m, scratch, wrench + BOUGH_ROD_OUTPUTS);
 }

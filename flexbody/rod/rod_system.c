@@ -224,9 +224,10 @@ static bool derivative(void *self, double t, const double *state, const double *
 
 static void output(void *self, double t, const double *state, const double *input, double *wrench) {
     bough_rod_body *b = self;
-    bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
-    if (!bough_rod_carries(b->model)) return;
-    bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench + BOUGH_ROD_OUTPUTS);
+    if (bough_rod_carries(b->model))
+        bough_rod_wrenches(b->model, &b->loads, t, state, input, &b->scratch, wrench);
+    else
+        bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
 }
 
 // The wrenches by the forces of the derivative just evaluated, and of the second derivative what the first
