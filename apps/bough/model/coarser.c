@@ -169,17 +169,26 @@ static bool has_fixed_steps(const bough_scene *scene) {
 
 static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
 
+bool bough_coarser_steps_alone(const bough_scene *scene) {
+    static const double tight = 1e-5;
+    bool mesh = false;
+    for (int i = 0; i < scene->n_body; i++) mesh = mesh || bough_scene_has_mesh(&scene->body[i]);
+    bool sampled = scene->aero.node || scene->control.node;
+    return is_one_system(scene) && scene->simulation.master.rtol < tight && !mesh && !sampled;
+}
+
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
-// vibrations stay whose phases and amplitudes err at a lower order; half where loads of the air are held
-// constant between samples, which is of order 1. What a coupling errs by is the whole difference to a
-// solution without one: all of it by a coupling that is explicit, repeats steps or is of order 1, as any is
-// across a jump within a macro step, or of fixed steps; half otherwise, where steps and mesh take part.
+// vibrations stay whose phases and amplitudes err at a lower order; a tenth beside a still larger tolerance
+// of rigid bodies; half where loads of the air are held constant between samples, which is of order 1. What a
+// coupling errs by is the whole difference to a solution without one: all of it by a coupling that is
+// explicit, repeats steps or is of order 1, as any is across a jump within a macro step, or of fixed steps;
+// half otherwise, where steps and mesh take part.
 static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
     if (has_fixed_steps(scene)) return 1;
-    if (scheme->one_system) return held ? 0.5 : air ? 0.25 : 0.4;
+    if (scheme->one_system) return held ? 0.5 : air ? 0.25 : bough_coarser_steps_alone(scene) ? 0.1 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
                  bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
@@ -204,18 +213,21 @@ double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *othe
 
 // -- time -----------------------------------------------------------------------------------------
 
-// Tolerance and longest step over the run's.
+// Tolerance, longest step and macro step over the run's.
 typedef struct looser {
-    double rtol, step;
+    double rtol, step, macro_step;
 } looser;
 
 static const double loosest = 0.02; // tolerance
 
 // If the error is the whole difference, the part of the steps must be small: once or twice the run's own
 // error beside an explicit coupling; a few times beside a finer mesh, whose companion would otherwise take as
-// long as the run. Otherwise it is a multiple, of which the run's error is a quarter.
+// long as the run. Otherwise it is a multiple, of which the run's error is a quarter. The order of rigid
+// bodies' integrators is higher, and macro steps cost them steps.
 static looser looser_of(const bough_scene *scene) {
-    return some_finer(scene) ? (looser){6, 2} : usual_ratio(scene) == 1 ? (looser){3, 1.5} : (looser){10, 2};
+    if (some_finer(scene)) return (looser){6, 2, 2};
+    if (usual_ratio(scene) == 1) return (looser){3, 1.5, 2};
+    return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4} : (looser){10, 2, 2};
 }
 
 double bough_coarser_time_ratio(const bough_scene *scene) {
@@ -286,8 +298,8 @@ static void delay_jumps(bough_arena *arena, const bough_simulation *run, bough_s
     }
 }
 
-static void lengthen_macro_step(bough_scene *to) {
-    double step = 2 * to->simulation.macro_step;
+static void lengthen_macro_step(double times, bough_scene *to) {
+    double step = times * to->simulation.macro_step;
     if (!steps_fit(to, step)) return;
     to->simulation.macro_step = step;
     to->simulation.halves = true;
@@ -350,8 +362,9 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     looser by = looser_of(scene);
     x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
     x->master.step *= by.step;
+    if (x->master.step == 0 && by.step < by.macro_step) x->master.step = by.step * x->macro_step;
     x->master.coarse = true;
-    lengthen_macro_step(to);
+    lengthen_macro_step(by.macro_step, to);
 }
 
 static const double largest_rtol = 1e-4; // of the finer solution

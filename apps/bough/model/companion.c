@@ -154,7 +154,7 @@ static double difference(const bough_channel *channel, double a, double b) {
     return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
 }
 
-// A force answers accelerations, whose errors are of a lower order.
+// A force of a mesh answers accelerations, whose errors are of a lower order.
 static const double least_ratio_of_force = 0.4;
 
 // Largest error of the air's loads between two samples. With a larger one the period of vibrations is near
@@ -172,9 +172,11 @@ static bool flutters(double run, double companion) {
 
 // 1/Q of a channel. A sampled channel that the companion holds one sample longer differs by the change in
 // that time.
-static double ratio_of(const bough_channel *channel, double ratio, double ratio_held) {
+static double ratio_of(const bough_companion *c, const bough_channel *channel, double ratio,
+                       double ratio_held) {
     if (channel->sampled) return ratio_held;
-    return channel->kind == BOUGH_KIND_FORCE ? fmax(ratio, least_ratio_of_force) : ratio;
+    bool answers = channel->kind == BOUGH_KIND_FORCE && !bough_coarser_steps_alone(c->run->scene);
+    return answers ? fmax(ratio, least_ratio_of_force) : ratio;
 }
 
 // The length of the vector that the channel is a component of.
@@ -362,7 +364,7 @@ static void compare(bough_companion *c) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error = ratio_of(channel, ratio, ratio_held) *
+        double error = ratio_of(c, channel, ratio, ratio_held) *
                        fabs(difference(channel, c->value[i], c->coarser.value[i]));
         error = fmax(error, stale(c, i));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins

@@ -19,8 +19,8 @@ enum {
     BOUGH_COARSER_MESH = 1, // half the segments of each rod, or more where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
     // Twice the macro step and the longest step, ten times the tolerance (six beside a finer mesh; 1.5 and
-    // 3 times beside an explicit coupling); all bodies as one system, without the error of a
-    // coupling.
+    // 3 times beside an explicit coupling; of rigid bodies four times the macro step, thirty times a
+    // tight tolerance); all bodies as one system, without the error of a coupling.
     BOUGH_COARSER_TIME = 4,
     BOUGH_COARSER_ALL = 7,
     // Not coarser but finer in time: one system, a tenth of the tolerance and half the longest step.
@@ -45,6 +45,9 @@ double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other);
 // The same for the part of the air: loads held constant, an error of order 1, err by twice the difference to
 // a copy of twice the rate.
 double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *other);
+
+// Whether steps of a tight tolerance alone err: rigid bodies as one system, without air and controller.
+bool bough_coarser_steps_alone(const bough_scene *scene);
 
 // The same for a copy that is coarser in time alone.
 double bough_coarser_time_ratio(const bough_scene *scene);

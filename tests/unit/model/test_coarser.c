@@ -165,6 +165,22 @@ TEST(steps_are_little_longer_where_the_whole_difference_counts) {
     }
 }
 
+// The integrators of rigid bodies have a high order.
+TEST(of_rigid_bodies_a_tight_tolerance_becomes_much_larger) {
+    static const struct {
+        const char *set;
+        double rtol, step, macro_step, ratio;
+    } cases[] = {{NULL, 3e-9, 20e-3, 40e-3, 0.1}, {"simulation.master.rtol=1e-5", 1e-4, 0, 20e-3, 0.4}};
+    check_arena(arena);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        coarser x = coarser_of(arena, "apps/mechanisms/pendulum.yaml", cases[k].set, NULL);
+        check_near(x.other->simulation.master.rtol, cases[k].rtol, 0, 1e-12);
+        check_near(x.other->simulation.master.step, cases[k].step, 0, 1e-12);
+        check_near(x.other->simulation.macro_step, cases[k].macro_step, 0, 1e-12);
+        check_near(bough_coarser_ratio(x.scene, x.other), cases[k].ratio, 0, 1e-12);
+    }
+}
+
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
 // twice as long.
 TEST(a_coupling_has_a_monolithic_companion) {
