@@ -89,14 +89,21 @@ static double largest_of(const bough_companion *c, const double *error) {
 
 static const double hardly = 0.25, hardly_yet = 0.05; // of the mesh's error
 
+// Whether all parts but the mesh err by much less than it, and within the bound.
+static bool is_mostly_mesh(const bough_companion *c, const bough_error_shares *shares, double bound,
+                           double much) {
+    const bough_error_share *mesh = &shares->share[BOUGH_SHARE_MESH];
+    if (mesh->unknown[0]) return false;
+    return largest_of(c, mesh->others) <= fmin(bound, much * largest_of(c, mesh->largest));
+}
+
 // Whether the mesh causes the error and no other part is needed. The rest must be much smaller: the companion
 // of a coupled run is monolithic, and errors may cancel.
 static bool is_by_mesh(const finding *x, double much) {
     const bough_companion *c = x->companion;
     const bough_scene_simulation *s = &c->run->scene->simulation;
-    const bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
-    if (s->error_shares || mesh->unknown[0] || c->flutters || c->reason[0]) return false;
-    return largest_of(c, mesh->others) <= fmin(s->error_bound, much * largest_of(c, mesh->largest));
+    if (s->error_shares || c->flutters || c->reason[0]) return false;
+    return is_mostly_mesh(c, x->shares, s->error_bound, much);
 }
 
 // The same before the end, where the mesh's error is beyond the bound. Without air and coupling schemes a
@@ -308,7 +315,8 @@ static int cause_of(const bough_companion *c, const bough_error_shares *shares, 
         cause = k;
         *relative = own;
     }
-    bool time_unknown = shares->share[BOUGH_SHARE_TIME].unknown[0];
+    bool time_unknown =
+        shares->share[BOUGH_SHARE_TIME].unknown[0] && !is_mostly_mesh(c, shares, bound, hardly);
     return cause == BOUGH_SHARE_MESH && time_unknown ? -1 : cause;
 }
 

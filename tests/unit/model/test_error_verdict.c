@@ -101,6 +101,27 @@ TEST(errors_of_what_stays_are_judged_by_its_value) {
     check_verdicts(&steady, 1, 7.001, 7e-4 / 0.07001, 7e-4 / 0.07001);
 }
 
+// The mesh is the cause, though the part of time is unknown, if all other parts together err by much less.
+TEST(a_run_that_errs_by_its_mesh_is_warned_of) {
+    double mesh[] = {0.2, 0}, others[] = {0.003, 0}, air[] = {0.004, 0};
+    two_channels v = {.high = {1, 1},
+                      .other_high = {1, 1},
+                      .error = {0.2, 0},
+                      .unit = {"m", "m"},
+                      .name = {"TipDxb1", "TipDyb1"}};
+    check_arena(arena);
+    bough_companion *c = compared(arena, &v);
+    bough_error_shares shares = {.found = true,
+                                 .n_channel = 2,
+                                 .share = {{"", mesh, others}, {"", air, mesh}, {"it failed", mesh, mesh}}};
+    char warning[BOUGH_ERROR_WARNING];
+    check_ok(bough_error_judge(arena, c, NULL, 0.02, &shares, warning));
+    assert_non_null(strstr(warning, "cause: the mesh"));
+    others[0] = 0.06;
+    check_fails(bough_error_judge(arena, c, NULL, 0.02, &shares, warning), BOUGH_FAILED,
+                "the cause was not found: it failed");
+}
+
 // A range of rounding is none to measure an error by.
 TEST(an_error_far_beyond_its_range_has_no_figure) {
     char words[BOUGH_ERROR_SIZE];
