@@ -18,7 +18,21 @@
 
 // The first steps of an imported scene, as a run takes them.
 
-static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound) {
+// Whether the air's sampling alone exceeds the bound, which no tolerance changes.
+static bool fails_by_air(const bough_companion *c, const bough_error_shares *shares, double bound) {
+    const bough_error_share *air = &shares->share[BOUGH_SHARE_AIR];
+    return shares->found && !air->unknown[0] &&
+           bough_error_verdict_of(c, true, air->largest).relative > bound;
+}
+
+// What a trial's process writes.
+typedef struct outcome {
+    bough_status status;
+    bool by_air;
+} outcome;
+
+static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound,
+                               bool *by_air) {
     bough_run run;
     bough_error_shares shares = {0};
     char warning[BOUGH_ERROR_WARNING];
@@ -29,7 +43,9 @@ static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps
     bough_status status = bough_run_create(arena, scene, &run);
     while (bough_is_ok(&status) && !bough_run_done(&run)) status = bough_run_step(&run);
     if (!bough_is_ok(&status)) return status;
-    return bough_error_judge(arena, run.companion, NULL, bound, &shares, warning);
+    status = bough_error_judge(arena, run.companion, NULL, bound, &shares, warning);
+    *by_air = status.code == BOUGH_FAILED && fails_by_air(run.companion, &shares, bound);
+    return status;
 }
 
 static bool calls_library(const bough_scene *scene) {
@@ -54,23 +70,25 @@ static void silence(void) {
     dup2(null, STDOUT_FILENO);
 }
 
-bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound) {
+bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound,
+                                bool *by_air) {
     int ends[2], end = 0;
-    bough_status status;
+    outcome of = {0};
     if (pipe(ends) != 0) return bough_fail(BOUGH_IO, "cannot start a trial: %s", strerror(errno));
     pid_t child = fork();
     if (child == 0) {
         silence();
-        status = take_steps(arena, scene, steps, bound);
-        bool whole = write(ends[1], &status, sizeof status) == (ssize_t)sizeof status;
+        of.status = take_steps(arena, scene, steps, bound, &of.by_air);
+        bool whole = write(ends[1], &of, sizeof of) == (ssize_t)sizeof of;
         _exit(whole ? 0 : 1);
     }
     close(ends[1]);
-    ssize_t got = child > 0 ? read(ends[0], &status, sizeof status) : 0;
+    ssize_t got = child > 0 ? read(ends[0], &of, sizeof of) : 0;
     close(ends[0]);
     if (child < 0) return bough_fail(BOUGH_IO, "cannot start a trial: %s", strerror(errno));
     while (waitpid(child, &end, 0) < 0 && errno == EINTR) continue;
-    return got == (ssize_t)sizeof status ? status : crash_of(scene, end);
+    *by_air = of.by_air;
+    return got == (ssize_t)sizeof of ? of.status : crash_of(scene, end);
 }
 
 // Macro steps [s], and the largest rotation of the rotor in one [rad].
@@ -255,17 +273,18 @@ static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
 }
 
 // Tries one tolerance after the other, until the errors are small enough: well below the scene's bound, since
-// a whole run may err by more than its first steps, unless there is no smaller tolerance. The scene's text
-// gets that tolerance.
+// a whole run may err by more than its first steps, unless there is no smaller tolerance; or until the air
+// errs too much, which shorter macro steps mend. The scene's text gets that tolerance.
 static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
     const double usual = 0.5; // of the bound
     int steps = d->options->trial_steps > 0 ? d->options->trial_steps << d->halvings : TRIAL_STEPS;
     bough_status status = bough_ok();
-    for (int i = 0; i < N_TOLERANCE; i++) {
+    bool by_air = false;
+    for (int i = 0; i < N_TOLERANCE && !(by_air && d->halvings < HALVINGS); i++) {
         double part = d->options->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
         scene->simulation.master.rtol = strtod(tolerance[i], NULL);
         memcpy(d->text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
-        status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound);
+        status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound, &by_air);
         if (status.code != BOUGH_FAILED) break;
         bough_draft_note(d, BOUGH_TRIED, "rtol %s: %s", tolerance[i], status.message);
     }

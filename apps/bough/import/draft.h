@@ -106,7 +106,9 @@ void bough_import_path(FILE *file, const char *path);
 // Builds the scene and takes at most `steps` macro steps, with one thread and the calls of the controller's
 // library, in a process of its own: a library that crashes ends the trial, not the import. `bound`: of the
 // errors relative to the channels' ranges [1]; 0: none. BOUGH_INVALID: there is no such model, or its library
-// crashes; BOUGH_FAILED: it cannot be stepped, or its errors exceed the bound.
-bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound);
+// crashes; BOUGH_FAILED: it cannot be stepped, or its errors exceed the bound, `by_air`: those of the air's
+// sampling alone do.
+bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound,
+                                bool *by_air);
 
 #endif

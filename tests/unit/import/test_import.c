@@ -255,9 +255,9 @@ TEST(trials_shorten_the_macro_step) {
                   "macro steps of 0.000625 s and rtol 1.5e-5: ");
 }
 
-static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound) {
+static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound, bool *by_air) {
     scene->simulation.master.rtol = rtol;
-    return bough_import_trial(t->arena, scene, 10, bound);
+    return bough_import_trial(t->arena, scene, 10, bound, by_air);
 }
 
 // Errors fall with the tolerance, so that some bound lies between those of two.
@@ -268,13 +268,20 @@ TEST(trials_judge_errors) {
     bough_errors errors = {.arena = t.arena};
     bough_scene *scene;
     check_ok(bough_scene_read(t.arena, NULL, path, NULL, 0, &errors, &scene));
-    bough_status status = try_with(&t, scene, 1e-3, 0);
+    bool by_air;
+    bough_status status = try_with(&t, scene, 1e-3, 0, &by_air);
     assert_string_equal(status.message, "");
     double bound = 1;
-    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound), bough_is_ok(&status))) bound /= 4;
+    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound, &by_air), bough_is_ok(&status)))
+        bound /= 4;
     check_fails(status, BOUGH_FAILED, "the error bound");
-    status = try_with(&t, scene, 1e-7, bound);
+    assert_false(by_air);
+    status = try_with(&t, scene, 1e-7, bound, &by_air);
     assert_string_equal(status.message, "");
+    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-7, bound, &by_air), bough_is_ok(&status)))
+        bound /= 4;
+    check_fails(status, BOUGH_FAILED, "the sampling of the air");
+    assert_true(by_air);
 }
 
 // As the command does it: what it writes has been tried for 150 steps.
