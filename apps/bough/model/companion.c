@@ -67,8 +67,8 @@ static bough_status build(bough_arena *arena, bough_companion *c) {
 // Takes the channels of both into their ranges.
 static void widen(int n, const double *value, double *low, double *high) {
     for (int i = 0; i < n; i++) {
-        low[i] = fmin(low[i], value[i]);
-        high[i] = fmax(high[i], value[i]);
+        low[i] = value[i] < low[i] ? value[i] : low[i];
+        high[i] = value[i] > high[i] ? value[i] : high[i];
     }
 }
 
@@ -366,7 +366,8 @@ static void compare(bough_companion *c) {
         const bough_channel *channel = &c->channels->channel[i];
         double error = ratio_of(c, channel, ratio, ratio_held) *
                        fabs(difference(channel, c->value[i], c->coarser.value[i]));
-        error = fmax(error, stale(c, i));
+        double late = stale(c, i);
+        error = error > late ? error : late;
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
         if (bough_error_is_motion(channel) && error > largest * (c->high[i] - c->low[i]))
             largest = error / (c->high[i] - c->low[i]);

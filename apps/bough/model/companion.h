@@ -153,7 +153,7 @@ typedef struct bough_run_counts {
     long steps;    // of the integrator that takes fewest
 } bough_run_counts;
 
-enum { BOUGH_COMPANION_ROWS = 8 };
+enum { BOUGH_COMPANION_ROWS = 16 };
 
 // The companion at one of its synchronisation points.
 typedef struct bough_companion_row {

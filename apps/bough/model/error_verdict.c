@@ -20,14 +20,18 @@ bool bough_error_is_motion(const bough_channel *channel) {
 
 // -- ranges ---------------------------------------------------------------------------------------
 
+// Without the calls that fmin and fmax take: every comparison finds the ranges of all channels.
+static double smaller(double a, double b) { return b < a ? b : a; }
+static double larger(double a, double b) { return b > a ? b : a; }
+
 // Range of the channel alone: the smaller of run and companion.
 static double own_range(const bough_companion *c, int i) {
-    return fmax(fmin(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]), 0);
+    return larger(0, smaller(c->high[i] - c->low[i], c->other_high[i] - c->other_low[i]));
 }
 
 static double largest_value(const bough_companion *c, int i) {
-    double run = fmax(fabs(c->high[i]), fabs(c->low[i]));
-    return fmin(run, fmax(fabs(c->other_high[i]), fabs(c->other_low[i])));
+    double run = larger(fabs(c->high[i]), fabs(c->low[i]));
+    return smaller(run, larger(fabs(c->other_high[i]), fabs(c->other_low[i])));
 }
 
 // Whether the vector of which the channel is a component moves by no more than rounding, in run and
@@ -82,8 +86,8 @@ static double largest_motion(const bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (!bough_error_is_motion(channel)) continue;
-        double value = fmin(channel->si * largest_value(c, i), 1);
-        largest = fmax(largest, fmax(value, channel->si * own_range(c, i)));
+        double value = smaller(1, channel->si * largest_value(c, i));
+        largest = larger(largest, larger(value, channel->si * own_range(c, i)));
     }
     return largest;
 }
