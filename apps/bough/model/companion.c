@@ -205,11 +205,12 @@ static double stale(const bough_companion *c, int i) {
     return held ? c->ratio_held * change_of(c, i) : 0;
 }
 
-// Whether an error is noticeable and a tenth of what the channel's is so far.
+// Whether an error is noticeable and a quarter of what the channel's is so far. Forces of a scene at rest
+// differ by rounding.
 static bool is_large(const bough_companion *c, int i, double error) {
     double accuracy = c->run->scene->simulation.accuracy;
-    return error > 0.1 * c->error[i] && error > 0.1 * accuracy * bough_error_range(c, i) &&
-           bough_error_counts(c, i);
+    return error > 0.25 * c->error[i] && error > 0.1 * accuracy * bough_error_range(c, i) &&
+           bough_error_counts(c, i) && c->rest == 0;
 }
 
 // Vibrations that are faster than the steps decay in run and companion and leave no difference, and those
