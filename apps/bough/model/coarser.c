@@ -170,7 +170,7 @@ static bool has_fixed_steps(const bough_scene *scene) {
 static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
 
 bool bough_coarser_steps_alone(const bough_scene *scene) {
-    static const double tight = 1e-5;
+    static const double tight = 1e-6;
     bool mesh = false;
     for (int i = 0; i < scene->n_body; i++) mesh = mesh || bough_scene_has_mesh(&scene->body[i]);
     bool sampled = scene->aero.node || scene->control.node;
@@ -222,10 +222,12 @@ static const double loosest = 0.02; // tolerance
 
 // If the error is the whole difference, the part of the steps must be small: once or twice the run's own
 // error beside an explicit coupling; a few times beside a finer mesh, whose companion would otherwise take as
-// long as the run. Otherwise it is a multiple, of which the run's error is a quarter. The order of rigid
-// bodies' integrators is higher, and macro steps cost them steps.
+// long as the run, and more where a tight tolerance leaves the error to the mesh. Otherwise it is a multiple,
+// of which the run's error is a quarter. Integrators of a tight tolerance have a high order, and the end of
+// each macro step cuts one of their steps short.
 static looser looser_of(const bough_scene *scene) {
-    if (some_finer(scene)) return (looser){6, 2, 2};
+    double beside_mesh = fmax(6, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
+    if (some_finer(scene)) return (looser){beside_mesh, 2, 2};
     if (usual_ratio(scene) == 1) return (looser){3, 1.5, 2};
     return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4} : (looser){10, 2, 2};
 }
