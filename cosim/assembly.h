@@ -4,8 +4,6 @@
 #ifndef BOUGH_COSIM_ASSEMBLY_H
 #define BOUGH_COSIM_ASSEMBLY_H
 
-#include "core/base/arena.h"
-#include "core/base/status.h"
 #include "cosim/member.h"
 
 // A member and its level. Members of one level advance in parallel; sequential schemes advance the levels

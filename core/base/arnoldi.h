@@ -4,7 +4,6 @@
 #define BOUGH_CORE_BASE_ARNOLDI_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 enum { BOUGH_ARNOLDI_AT_ONCE = 8 }; // most
 

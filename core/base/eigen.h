@@ -4,7 +4,6 @@
 #define BOUGH_CORE_BASE_EIGEN_H
 
 #include "core/base/block_tridiagonal.h"
-#include "core/base/status.h"
 
 enum { BOUGH_EIGEN_AT_ONCE = 4 };
 

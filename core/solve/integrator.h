@@ -5,9 +5,7 @@
 #ifndef BOUGH_CORE_SOLVE_INTEGRATOR_H
 #define BOUGH_CORE_SOLVE_INTEGRATOR_H
 
-#include "core/base/arena.h"
 #include "core/base/snapshot.h"
-#include "core/base/status.h"
 #include "core/solve/system.h"
 
 // Work done so far, for the summary.

@@ -5,9 +5,7 @@
 #ifndef BOUGH_CORE_TREE_TREE_H
 #define BOUGH_CORE_TREE_TREE_H
 
-#include "core/base/arena.h"
 #include "core/base/schedule.h"
-#include "core/base/status.h"
 #include "core/solve/system.h"
 #include "core/tree/constraint.h"
 #include "core/tree/joint.h"

@@ -18,7 +18,6 @@
 #include "core/base/level.h"
 #include "core/base/rotation.h"
 #include "core/base/schedule.h"
-#include "core/base/status.h"
 
 enum {
     BOUGH_ROD_STATES = 13, // per moving vertex

@@ -1,7 +1,6 @@
 #include "flexbody/rod/rod_modes.h"
 
 #include "core/base/eigen.h"
-#include "flexbody/rod/rod_tangent.h"
 
 static const double rounding = 1e-11; // damping ratios below it are none
 

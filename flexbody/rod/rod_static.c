@@ -3,7 +3,6 @@
 
 #include "core/base/linalg.h"
 #include "flexbody/rod/rod_segment.h"
-#include "flexbody/rod/rod_tangent.h"
 
 // Numbers of vertex i + 1 in rows of n: its state's, or the end's.
 typedef struct vertex_row {

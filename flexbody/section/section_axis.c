@@ -2,7 +2,6 @@
 #include "flexbody/section/section_axis.h"
 
 #include "core/base/linalg.h"
-#include "core/base/schedule.h"
 
 enum { MOST_HALVINGS = 40 };
 

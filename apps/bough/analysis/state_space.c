@@ -2,7 +2,6 @@
 #include "apps/bough/analysis/state_space.h"
 
 #include "apps/bough/analysis/air_tangent.h"
-#include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/equilibrium.h"

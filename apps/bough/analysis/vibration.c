@@ -5,7 +5,6 @@
 #include "apps/bough/analysis/steady.h"
 #include "apps/bough/model/companion.h"
 #include "core/tree/dynamics.h"
-#include "cosim/analysis/modes.h"
 
 #include <complex.h>
 

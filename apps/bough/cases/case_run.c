@@ -3,8 +3,6 @@
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/validity.h"
-#include "apps/bough/results/folder.h"
-#include "apps/bough/results/recorder.h"
 #include "apps/bough/scene/scene_files.h"
 
 typedef struct case_run {

@@ -7,7 +7,6 @@
 #include "apps/bough/cases/study.h"
 #include "apps/bough/results/progress.h"
 #include "apps/bough/scene/scene.h"
-#include "core/base/arena.h"
 #include "cosim/watch/monitor.h"
 
 // -- boxes of turbulence (boxes.c) ----------------------------------------------------------------

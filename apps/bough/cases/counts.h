@@ -4,7 +4,6 @@
 #define BOUGH_APPS_CASES_COUNTS_H
 
 #include "apps/bough/results/recorder.h"
-#include "core/base/arena.h"
 
 // -- levels ---------------------------------------------------------------------------------------
 

@@ -1,10 +1,6 @@
 // Performs the runs of a study, several at a time, until all are done or one of them ends the study.
 #include "apps/bough/cases/perform.h"
 
-#include "apps/bough/config/schema.h"
-#include "apps/bough/results/folder.h"
-#include "core/base/pool.h"
-
 #include <pthread.h>
 
 typedef struct work {

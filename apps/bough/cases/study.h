@@ -9,8 +9,6 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/config/text.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_MOST_CASES = 100000 };
 

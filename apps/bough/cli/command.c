@@ -1,7 +1,5 @@
 #include "apps/bough/cli/command.h"
 
-#include "core/base/level.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <signal.h>

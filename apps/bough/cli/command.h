@@ -5,8 +5,6 @@
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/simulation.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 // In `bough --version` and summary.json; tests/cli/test_cli.sh compares it with the version of the build.
 #define BOUGH_VERSION "0.1.0"

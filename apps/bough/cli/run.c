@@ -2,9 +2,6 @@
 #include "apps/bough/cli/run.h"
 
 #include "apps/bough/model/validity.h"
-#include "apps/bough/results/folder.h"
-#include "apps/bough/results/progress.h"
-#include "apps/bough/results/recorder.h"
 
 #include <sys/statvfs.h>
 

@@ -7,7 +7,6 @@
 #include "apps/bough/model/run.h"
 #include "apps/bough/model/shape.h"
 #include "apps/bough/results/recorder.h"
-#include "apps/bough/results/summary.h"
 
 typedef struct bough_checkpoint {
     double interval;         // [s]; 0: none are written

@@ -4,7 +4,6 @@
 #include "apps/bough/cli/command.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/equilibrium.h"
-#include "apps/bough/model/error_verdict.h"
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
 

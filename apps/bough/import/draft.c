@@ -4,7 +4,6 @@
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
-#include "apps/bough/scene/scene.h"
 #include "core/base/quote.h"
 
 #include <ctype.h>

@@ -6,8 +6,6 @@
 #include "aero/wind/wind_box.h"
 #include "apps/bough/import/import.h"
 #include "apps/bough/scene/scene.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 typedef enum bough_import_file {
     BOUGH_IMPORT_SCENE,

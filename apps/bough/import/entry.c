@@ -1,7 +1,6 @@
 #include "apps/bough/import/windio.h"
 
 #include "apps/bough/config/schema.h"
-#include "core/base/schedule.h"
 
 #include <stdarg.h>
 

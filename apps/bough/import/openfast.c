@@ -1,5 +1,4 @@
 // The main file of an OpenFAST model, and the order in which the scene is written.
-#include "apps/bough/import/import.h"
 
 #include "apps/bough/import/openfast.h"
 

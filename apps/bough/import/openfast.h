@@ -5,8 +5,6 @@
 
 #include "apps/bough/import/draft.h"
 #include "apps/bough/import/import.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 // -- the format (deck.c) --------------------------------------------------------------------------
 

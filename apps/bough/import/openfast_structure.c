@@ -2,7 +2,6 @@
 // frequencies convert damping ratios to times.
 #include "apps/bough/import/openfast.h"
 #include "apps/bough/import/section.h"
-#include "core/base/schedule.h"
 
 enum { MOST = 1000, GRID = 400, FIRST = 2, COEFFICIENTS = 5 };
 

@@ -1,7 +1,6 @@
 #include "apps/bough/import/section.h"
 
 #include "core/base/linalg.h"
-#include "core/base/schedule.h"
 
 static void put_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
     double entry[21];

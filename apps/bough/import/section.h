@@ -3,8 +3,6 @@
 #define BOUGH_APPS_IMPORT_SECTION_H
 
 #include "apps/bough/import/draft.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 enum { BOUGH_IMPORT_MATRIX = 36 };
 

@@ -1,6 +1,5 @@
 #include "apps/bough/import/wind.h"
 
-#include "aero/wind/wind_hub.h"
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 

@@ -1,8 +1,6 @@
 // A turbine of the WindIO ontology: the paths of its parts in both layouts, and the order of the scene.
 #include "apps/bough/import/windio.h"
 
-#include "apps/bough/import/import.h"
-
 static const double duration = 20; // [s]: the file has none
 
 // -- reading --------------------------------------------------------------------------------------

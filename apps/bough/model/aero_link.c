@@ -1,7 +1,5 @@
 #include "apps/bough/model/aero_link.h"
 
-#include "core/base/schedule.h"
-
 struct bough_aero_link {
     bough_simulation *simulation;
     bough_rotor *rotor;

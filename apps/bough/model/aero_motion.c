@@ -1,7 +1,5 @@
 #include "apps/bough/model/aero_link.h"
 
-#include "core/base/rotation.h"
-
 enum { CALLS = 3 }; // stored: the motion is extrapolated by a parabola
 
 // A blade's state: its rows, velocity and angular velocity of its frame, hub and shaft in the frame (of

@@ -1,7 +1,6 @@
 // Builds the bodies of the tree, the undeformed beams, and the members of flexible beams.
 #include "apps/bough/model/build_internal.h"
 
-#include "core/base/rotation.h"
 #include "flexbody/section/section.h"
 
 // -- joints ---------------------------------------------------------------------------------------

@@ -1,10 +1,7 @@
 #include "apps/bough/model/control_link.h"
 
-#include "aero/control/discon.h"
-#include "apps/bough/config/schema.h"
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/fmu_instance.h"
-#include "apps/bough/model/simulation.h"
 
 // State of an event. Doubles only: a copy has no padding.
 typedef struct event_state {

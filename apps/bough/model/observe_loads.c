@@ -3,7 +3,6 @@
 #include "apps/bough/model/channel_table.h"
 #include "apps/bough/model/section_loads.h"
 #include "core/base/linalg.h"
-#include "core/tree/loop.h"
 
 // -- sections -------------------------------------------------------------------------------------
 

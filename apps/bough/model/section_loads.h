@@ -3,7 +3,6 @@
 #define BOUGH_APPS_MODEL_SECTION_LOADS_H
 
 #include "apps/bough/model/simulation.h"
-#include "core/base/rotation.h"
 
 // Axes between two rotations: p at fraction 0, q at fraction 1.
 static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double fraction) {

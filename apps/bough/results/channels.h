@@ -4,7 +4,6 @@
 #define BOUGH_APPS_RESULTS_CHANNELS_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 enum { BOUGH_CHANNEL_NAME = 48, BOUGH_CHANNEL_UNIT = 16 };
 

@@ -4,7 +4,6 @@
 #define BOUGH_APPS_RESULTS_FOLDER_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 enum { BOUGH_PATH_MAX = 4096 };
 

@@ -4,8 +4,6 @@
 #define BOUGH_APPS_RESULTS_FRAMES_H
 
 #include "apps/bough/results/folder.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 typedef struct bough_frames bough_frames;
 

@@ -9,8 +9,6 @@
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 
 typedef struct bough_recorder bough_recorder;
 

@@ -4,7 +4,6 @@
 #define BOUGH_APPS_RESULTS_REPORT_H
 
 #include "core/base/arena.h"
-#include "core/base/status.h"
 
 // The page with a line "@DATA@" where the data go; ends with a zero.
 extern const unsigned char bough_report_page[];

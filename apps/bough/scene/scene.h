@@ -16,8 +16,6 @@
 #include "apps/bough/config/schema.h"
 #include "apps/bough/config/text.h"
 #include "apps/bough/scene/scene_air.h"
-#include "core/base/arena.h"
-#include "core/base/status.h"
 #include "core/tree/tree.h"
 #include "cosim/scheme.h"
 #include "flexbody/section/section.h"

@@ -1,6 +1,5 @@
 #include "apps/bough/scene/scene_files.h"
 
-#include "apps/bough/config/schema.h"
 #include "core/base/input_file.h"
 
 #include <dirent.h>

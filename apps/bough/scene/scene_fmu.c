@@ -1,6 +1,5 @@
 // FMUs as bodies and as controllers: finds their variables and refuses what they cannot be used with.
 #include "apps/bough/scene/scene_internal.h"
-#include "cosim/master.h"
 
 // -- one FMU --------------------------------------------------------------------------------------
 

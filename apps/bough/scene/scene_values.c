@@ -2,7 +2,6 @@
 #include "apps/bough/scene/scene_internal.h"
 
 #include "core/base/linalg.h"
-#include "core/base/rotation.h"
 
 // -- placement ------------------------------------------------------------------------------------
 
