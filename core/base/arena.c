@@ -3,7 +3,6 @@
 #include "core/base/arena.h"
 
 #include <setjmp.h>
-#include <stdarg.h>
 #include <sys/mman.h>
 
 // [bytes]; PAGE: of the large ones

@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -14,6 +15,15 @@
 #define BOUGH_PI 3.14159265358979323846
 #define BOUGH_DEGREE (BOUGH_PI / 180) // [rad]
 #define BOUGH_RPM (BOUGH_PI / 30)     // [rad/s]
+
+// In a function (…, format, ...): prints its arguments to the array `text`, cut at its size.
+#define BOUGH_PRINT(text, format)                                                                            \
+    do {                                                                                                     \
+        va_list arguments_;                                                                                  \
+        va_start(arguments_, format);                                                                        \
+        vsnprintf(text, sizeof(text), format, arguments_);                                                   \
+        va_end(arguments_);                                                                                  \
+    } while (0)
 
 // For functions called in loops over vector lanes: a loop with a call in it is not vectorised. Of a static
 // function clang passes the members of structures one by one, and then cannot see that iterations are

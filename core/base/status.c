@@ -1,7 +1,5 @@
 #include "core/base/status.h"
 
-#include <stdarg.h>
-
 // Not an initialiser, which would clear the whole message.
 bough_status bough_ok(void) {
     bough_status status;

@@ -4,8 +4,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/picture.h"
 
-#include <stdarg.h>
-
 // -- differences of series ------------------------------------------------------------------------
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study) {
@@ -92,13 +90,9 @@ typedef struct line {
     char field[COLUMNS][sizeof((bough_status *)NULL)->message];
 } line;
 
-static void put(line *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void put(line *l, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(l->field[l->n++], sizeof *l->field, format, arguments);
-    va_end(arguments);
+__attribute__((format(printf, 2, 3))) static void put(line *l, const char *format, ...) {
+    BOUGH_PRINT(l->field[l->n], format);
+    l->n++;
 }
 
 // The text in table.txt is cut at the column's width.

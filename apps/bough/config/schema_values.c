@@ -1,8 +1,6 @@
 // Reading one value by its key: numbers, texts, choices, lists of them. Errors name the path.
 #include "apps/bough/config/schema.h"
 
-#include <stdarg.h>
-
 enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
 enum { MAX_CHOICES = 32 };  // of a key
 
@@ -26,10 +24,7 @@ void bough_schema_pop(bough_schema_reader *r, size_t length) { r->path[length] =
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) {
     char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    BOUGH_PRINT(text, format);
     size_t length = key[0] == '\0' ? strlen(reader->path) : bough_schema_push_key(reader, key);
     bough_node_below(node, key, &node);
     bough_errors_add(reader->errors, node, reader->path, "%s", text);

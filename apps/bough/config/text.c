@@ -7,8 +7,6 @@
 
 #include <yaml.h>
 
-#include <stdarg.h>
-
 enum {
     MAX_BYTES = 16 * 1024 * 1024,
     MAX_DEPTH = 64,
@@ -61,10 +59,7 @@ void bough_errors_add(bough_errors *errors, const bough_node *where, const char 
     errors->item =
         bough_arena_grow(errors->arena, errors->item, errors->n, &errors->capacity, sizeof *errors->item);
     char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    BOUGH_PRINT(text, format);
     errors->item[errors->n++] =
         (bough_error){bough_arena_string(errors->arena, where->file), where->line, where->column,
                       bough_arena_string(errors->arena, path), bough_arena_string(errors->arena, text)};

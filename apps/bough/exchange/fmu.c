@@ -7,8 +7,6 @@
 #include "apps/bough/exchange/bough.h"
 #include "apps/bough/model/fmi3.h"
 
-#include <stdarg.h>
-
 // NOLINTBEGIN(readability-function-size): FMI fixes the parameters
 
 enum { MORE_SETTINGS = 2 };
@@ -40,10 +38,7 @@ typedef struct state {
 __attribute__((format(printf, 3, 4))) static fmi3_status notify(const instance *x, fmi3_status status,
                                                                 const char *format, ...) {
     char text[2400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    BOUGH_PRINT(text, format);
     const char *category = status == FMI3_OK        ? "logAll"
                            : status == FMI3_WARNING ? "logStatusWarning"
                                                     : "logStatusError";

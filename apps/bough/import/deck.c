@@ -4,7 +4,6 @@
 #include "core/base/input_file.h"
 
 #include <dirent.h>
-#include <stdarg.h>
 #include <strings.h>
 #include <unistd.h>
 
@@ -13,20 +12,14 @@ enum { MOST_BYTES = 16 << 20, WORD = 1024, MOST_WORDS = 64 };
 void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) {
     if (!bough_is_ok(deck->status)) return;
     char text[300], at[24] = "";
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
+    BOUGH_PRINT(text, format);
     if (line >= 0) snprintf(at, sizeof at, "%d:", line + 1);
     *deck->status = bough_fail(BOUGH_INVALID, "%.150s:%s %s", deck->path, at, text);
 }
 
 void bough_deck_refuse(const bough_deck *deck, const char *names, const char *format, ...) {
     char text[300];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
+    BOUGH_PRINT(text, format);
     bough_deck_fail(deck, bough_deck_line(deck, names), "%.*s: %s", (int)strcspn(names, "|"), names, text);
 }
 

@@ -1,6 +1,5 @@
 #include "apps/bough/import/draft.h"
 
-#include "apps/bough/config/text.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/run.h"
 #include "apps/bough/results/folder.h"
@@ -9,7 +8,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -2,17 +2,12 @@
 
 #include "apps/bough/config/schema.h"
 
-#include <stdarg.h>
-
 enum { MOST = 4000, PATH = 200 };
 
 void bough_entry_fail(bough_draft *d, const bough_node *where, const char *format, ...) {
     if (!bough_is_ok(d->status)) return;
     char text[300];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
+    BOUGH_PRINT(text, format);
     *d->status = bough_fail(BOUGH_INVALID, "%.150s:%d:%d: %s", where->file, where->line, where->column, text);
 }
 

@@ -1,7 +1,6 @@
 #include "apps/bough/results/channels.h"
 
 #include <fnmatch.h>
-#include <stdarg.h>
 
 bough_channels bough_channels_start(bough_arena *arena) {
     const double **known = bough_arena_take(arena, sizeof *known);
@@ -76,10 +75,7 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     assert(list->group_count > 0);
     if (!bough_is_ok(&list->status)) return;
     char name[2 * BOUGH_CHANNEL_NAME];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(name, sizeof name, format, arguments);
-    va_end(arguments);
+    BOUGH_PRINT(name, format);
     if (!is_word(name, BOUGH_CHANNEL_NAME) || strcmp(name, "Time") == 0) {
         list->status = bough_fail(
             BOUGH_INVALID,

@@ -3,22 +3,12 @@
 // second error.
 #include "apps/bough/scene/scene_internal.h"
 
-#include <stdarg.h>
-
-void bough_link_at(bough_schema_reader *r, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(r->path, sizeof r->path, format, arguments);
-    va_end(arguments);
-}
+void bough_link_at(bough_schema_reader *r, const char *format, ...) { BOUGH_PRINT(r->path, format); }
 
 void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
                         const char *format, ...) {
     char key[32], text[300];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    BOUGH_PRINT(text, format);
     for (size_t n; *keys != '\0'; keys += n + (keys[n] == '|')) {
         n = strcspn(keys, "|");
         snprintf(key, sizeof key, "%.*s", (int)n, keys);

@@ -4,11 +4,8 @@
 #include "core/solve/integrator.h"
 #include "cosim/scheme.h"
 
-#include <stdarg.h>
-
-static void warn(const bough_node *at, FILE *stream, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static void warn(const bough_node *at, FILE *stream, const char *format, ...) {
+__attribute__((format(printf, 3, 4))) static void warn(const bough_node *at, FILE *stream, const char *format,
+                                                       ...) {
     char place[300];
     va_list arguments;
     va_start(arguments, format);
