@@ -234,6 +234,46 @@ static double age_of_tangents(const bough_integrator *micro, double t, double *y
     return (double)(after.steps - before.steps) / (double)(after.jacobians - before.jacobians);
 }
 
+static bool forced_derivative(void *self, double t, const double *y, double *rate) {
+    (void)self;
+    rate[0] = sin(50 * t) - y[0];
+    return true;
+}
+
+static bool forced_linearise(void *self, double t, const double *y) {
+    (void)self, (void)t, (void)y;
+    return true;
+}
+
+static bool forced_factor(void *self, double gamma) {
+    *(double *)self = 1 + gamma;
+    return true;
+}
+
+static void forced_solve(void *self, double *x) { *x /= *(double *)self; }
+
+// The error of a linear system's steps grows and falls with its force, by which its tangents are no older.
+TEST(tangents_are_not_blamed_for_the_motion) {
+    static const double scale[1] = {1};
+    double divisor, y[1] = {0};
+    bough_arena *arena = check_memory();
+    bough_ode ode = {
+        "lag",        1, scale, &divisor, forced_derivative, NULL, forced_linearise, NULL, forced_factor,
+        forced_solve, 1};
+    bough_integrator_options options = {.kind = BOUGH_ROSENBROCK, .rtol = 1e-3, .step = 0.01};
+    bough_integrator micro;
+    check_ok(bough_integrator_create(arena, &ode, &options, &micro));
+    age_of_tangents(&micro, 0, y);
+    double age = 0;
+    for (int i = 1; i < 5; i++) age += age_of_tangents(&micro, i, y) / 4;
+    bough_statistics sum = {0};
+    micro.ops->statistics(micro.self, &sum);
+    print_message("%g steps for each linearisation, %ld failed\n", age, sum.failed_steps);
+    assert_int_equal(sum.failed_steps, 0);
+    assert_true(age > 14);
+    bough_arena_destroy(arena);
+}
+
 // Without damping, tangents are kept as long as they hardly change, and no longer once they do.
 TEST(undamped_systems_keep_tangents_that_hardly_change) {
     static const double scale[4] = {1, 1, 1, 1};
