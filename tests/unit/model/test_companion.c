@@ -346,7 +346,8 @@ TEST(the_finer_solution_takes_little_work) {
     }
 }
 
-// What grows in a turbine at rest is rounding, and beside a weight on a rod what stays below the mesh's error.
+// What grows in a turbine at rest is rounding, and beside a weight on a rod what stays below the mesh's
+// error.
 TEST(what_errs_little_is_not_followed) {
     static const char *const scene[] = {"apps/turbine/parked.yaml", "tests/data/scenes/carrying.yaml"};
     for (int k = 0; k < 2; k++) {
