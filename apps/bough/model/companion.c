@@ -424,7 +424,9 @@ void bough_companion_compare(bough_companion *c) {
     }
     while (lags(c)) bough_companion_step(c, false);
     const bough_companion_row *row = find_present(c);
-    if (!bough_is_ok(&c->status) && row->time < c->run->master->time) {
+    // a failure counts from the end of the failed step, however many steps of the run were beside it
+    if (!bough_is_ok(&c->status) &&
+        c->run->master->time >= bough_master_next(c->coarser.simulation->master)) {
         give_up(c, c->status.message);
         c->run->master->compared = false;
     } else if (row->time == c->run->master->time && counts_now(c, c->run)) {
@@ -456,7 +458,8 @@ double bough_companion_work(const bough_companion *c) {
 
 bool bough_companion_storable(const bough_companion *c) {
     bool ahead = c->present < c->n_row - 1;
-    return !alive(c) || (!ahead && bough_master_sampled(c->coarser.simulation->master));
+    return !alive(c) ||
+           (bough_is_ok(&c->status) && !ahead && bough_master_sampled(c->coarser.simulation->master));
 }
 
 void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
