@@ -1,8 +1,7 @@
 // Fixed-point accelerators: iterations u ← H(u) that converge where the plain one diverges or is
 // slow. The residual is r = H(u) − u; components should be scaled to a common size by the caller,
 // because Aitken and IQN-ILS take scalar products of them.
-#ifndef BOUGH_COSIM_ACCELERATE_H
-#define BOUGH_COSIM_ACCELERATE_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -50,5 +49,3 @@ double bough_accelerator_contraction(const bough_accelerator *a);
 
 // u: the next iterate in place of the one taken.
 void bough_accelerator_next(bough_accelerator *a, double *u);
-
-#endif

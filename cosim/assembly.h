@@ -1,8 +1,7 @@
 // An assembly: members, the level in which each advances, and the connections that copy outputs to
 // inputs. It is constant after building. Arrays over all inputs contain input j of member i at
 // input_offset[i] + j; arrays over outputs and states likewise.
-#ifndef BOUGH_COSIM_ASSEMBLY_H
-#define BOUGH_COSIM_ASSEMBLY_H
+#pragma once
 
 #include "cosim/member.h"
 
@@ -76,5 +75,3 @@ void bough_assembly_scales(const bough_assembly *a, double *scale);
 
 // input[j] = output[source[j]] for the inputs of one member.
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output, double *input);
-
-#endif

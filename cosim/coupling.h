@@ -1,7 +1,6 @@
 // Working data of the macro steps of an assembly under a coupling scheme, and the moves that schemes consist
 // of.
-#ifndef BOUGH_COSIM_COUPLING_H
-#define BOUGH_COSIM_COUPLING_H
+#pragma once
 
 #include "core/base/pool.h"
 #include "core/base/snapshot.h"
@@ -132,5 +131,3 @@ void bough_coupling_record(bough_coupling *c);
 // The memory that a step changes and the next step needs: the members' states and the exchanged values,
 // without the scheme's own memory.
 void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s);
-
-#endif

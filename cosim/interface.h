@@ -8,8 +8,7 @@
 // with the leaders' inputs u, the response Z of their coordinates to them (1 for inputs), and the response
 // K of the inputs to the coordinates through leaders and followers. So many bodies on one leader with two
 // states cost two unknowns, and work in proportion to their number.
-#ifndef BOUGH_COSIM_INTERFACE_H
-#define BOUGH_COSIM_INTERFACE_H
+#pragma once
 
 #include "core/base/level.h"
 #include "cosim/assembly.h"
@@ -107,5 +106,3 @@ void bough_interface_add_columns(const bough_interface *k, int member, double fa
 
 // The spectral radius of Z K, which is overwritten, the gain of the interface.
 double bough_interface_radius(bough_interface *k);
-
-#endif

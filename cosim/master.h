@@ -2,8 +2,7 @@
 // falls inside it, and the last one ends exactly on the duration. A run that is compared with one of half its
 // macro step takes some steps in halves: what happens only within macro steps would never be compared, and a
 // vibration with a period of two macro steps at one phase only.
-#ifndef BOUGH_COSIM_MASTER_H
-#define BOUGH_COSIM_MASTER_H
+#pragma once
 
 #include "cosim/analysis/stability.h"
 #include "cosim/scheme.h"
@@ -117,5 +116,3 @@ double bough_master_next(const bough_master *m);
 
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);
-
-#endif

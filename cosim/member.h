@@ -1,8 +1,7 @@
 // A member of an assembly: a system, its current time and state, and the integrator that advances it over
 // a macro step by its own steps. The integrator need not be in the table of core/solve/integrator.h: a
 // foreign simulator is a member with an integrator of its own.
-#ifndef BOUGH_COSIM_MEMBER_H
-#define BOUGH_COSIM_MEMBER_H
+#pragma once
 
 #include "core/solve/integrator.h"
 #include "core/solve/system.h"
@@ -46,5 +45,3 @@ void bough_member_snapshot(bough_member *m, bough_snapshot *s);
 
 // Work of its own steps so far.
 bough_statistics bough_member_statistics(const bough_member *m);
-
-#endif

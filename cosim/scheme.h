@@ -1,8 +1,7 @@
 // Coupling schemes: how the members of an assembly advance over one macro step, and which inputs they get
 // while they integrate. A scheme is one file, which ends with its entry, and one line of the table in
 // scheme.c. Other code uses the entry only, and names no scheme but the default.
-#ifndef BOUGH_COSIM_SCHEME_H
-#define BOUGH_COSIM_SCHEME_H
+#pragma once
 
 #include "cosim/coupling.h"
 
@@ -138,5 +137,3 @@ bough_scheme_report bough_scheme_reported(const bough_coupling *c);
 int bough_scheme_n_memory(const bough_coupling *c);
 void bough_scheme_load(bough_coupling *c, double h, const double *z);
 void bough_scheme_store(const bough_coupling *c, double *z);
-
-#endif

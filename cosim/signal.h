@@ -1,7 +1,6 @@
 // Input signals on one macro step: vector-valued cubics in time, filled component by component from values
 // (and rates) at synchronisation points.
-#ifndef BOUGH_COSIM_SIGNAL_H
-#define BOUGH_COSIM_SIGNAL_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -50,5 +49,3 @@ typedef struct bough_signal_end {
     double value, rate;
 } bough_signal_end;
 void bough_signal_hermite(bough_signal *s, int j, bough_signal_end start, bough_signal_end end);
-
-#endif

@@ -3,8 +3,7 @@
 // exceed the tolerance is undone, by a stored copy of members and coupling, and halved. When the defects
 // are well below the tolerance, the length is doubled again. Halving and doubling keep the factors of
 // sub-solvers, and the results for any number of threads.
-#ifndef BOUGH_COSIM_STEP_CONTROL_H
-#define BOUGH_COSIM_STEP_CONTROL_H
+#pragma once
 
 #include "cosim/coupling.h"
 
@@ -56,5 +55,3 @@ bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, d
 
 // Whether a step cannot become shorter.
 bool bough_step_control_exhausted(const bough_step_control *s);
-
-#endif

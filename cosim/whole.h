@@ -1,8 +1,7 @@
 // All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs, theory (54):
 // its rate, and solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix, theory (55), solved by
 // static condensation: each member is factored separately, and the interface system is that of interface.h.
-#ifndef BOUGH_COSIM_WHOLE_H
-#define BOUGH_COSIM_WHOLE_H
+#pragma once
 
 #include "core/base/pool.h"
 #include "cosim/interface.h"
@@ -107,5 +106,3 @@ void bough_whole_solve_interface(bough_whole *whole);
 
 // Adds the member's response to that, which completes its states in x (n_state).
 void bough_whole_respond(const bough_whole *whole, int member, double *x);
-
-#endif

@@ -4,8 +4,7 @@
 // When memory is exhausted, the work is abandoned by a jump: bough_arena_guard returns BOUGH_OUT_OF_MEMORY.
 // So code that takes memory always gets it, and need not check. Files and objects of libraries that are open
 // during the work must belong to the arena (bough_arena_on_destroy).
-#ifndef BOUGH_CORE_BASE_ARENA_H
-#define BOUGH_CORE_BASE_ARENA_H
+#pragma once
 
 #include "core/base/status.h"
 
@@ -62,5 +61,3 @@ _Noreturn void bough_arena_leave(bough_arena *arena);
 
 // Bytes taken so far.
 size_t bough_arena_bytes(const bough_arena *arena);
-
-#endif

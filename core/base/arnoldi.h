@@ -1,7 +1,6 @@
 // Arnoldi's method: an orthonormal basis of the space that a linear operator spans from its starting
 // vectors, by Gram–Schmidt done twice, and the eigenvalues of the operator projected on it.
-#ifndef BOUGH_CORE_BASE_ARNOLDI_H
-#define BOUGH_CORE_BASE_ARNOLDI_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -50,5 +49,3 @@ double bough_arnoldi_residual(const bough_arnoldi *a, int k);
 
 // x (n × length) ← Σ y_k q_k over the vectors done, for y (n × done).
 void bough_arnoldi_combine(const bough_arnoldi *a, int n, const double *y, double *x);
-
-#endif

@@ -1,6 +1,5 @@
 // What every file of the program has: the usual headers of the C library, constants, small helpers.
-#ifndef BOUGH_CORE_BASE_BASE_H
-#define BOUGH_CORE_BASE_BASE_H
+#pragma once
 
 #include <assert.h>
 #include <math.h>
@@ -76,5 +75,3 @@ static inline void bough_cubic_bend(double chord, double s0, double s1, double d
     c[0] = (3 * chord - 2 * s0 - s1) / d;
     c[1] = (s0 + s1 - 2 * chord) / (d * d);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Products of single blocks of bough_block_tridiagonal.
-#ifndef BOUGH_CORE_BASE_BLOCK_MATRIX_H
-#define BOUGH_CORE_BASE_BLOCK_MATRIX_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -35,5 +34,3 @@ BOUGH_INLINE void product(const double *restrict a, const double *restrict b, do
         for (int i = 0; i < W; i++) c[W * j + i] = COLUMN_SUM(a, column, i);
     }
 }
-
-#endif

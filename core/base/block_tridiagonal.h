@@ -5,8 +5,7 @@
 // Columns of a block are padded to 8 doubles so that one column is one vector register. A block at
 // `b` has entry (i, j) at b[8 j + i]; rows 6 and 7 are zero. Arrays of blocks have room for a
 // multiple of 8 blocks.
-#ifndef BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
-#define BOUGH_CORE_BASE_BLOCK_TRIDIAGONAL_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/level.h"
@@ -42,5 +41,3 @@ void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const do
 // c = a b and y −= a x for single padded blocks; y and x have 8 entries.
 void bough_block_product(const double *a, const double *b, double *c);
 void bough_block_subtract(const double *a, const double *x, double *y);
-
-#endif

@@ -1,6 +1,5 @@
 // Little-endian numbers, whatever the processor.
-#ifndef BOUGH_CORE_BASE_BYTES_H
-#define BOUGH_CORE_BASE_BYTES_H
+#pragma once
 
 #include <stdint.h>
 #include <stdio.h>
@@ -42,5 +41,3 @@ static inline void bough_put_double(FILE *file, double x) {
     memcpy(&bits, &x, sizeof bits);
     bough_put_bytes(file, bits, 8);
 }
-
-#endif

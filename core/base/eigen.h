@@ -1,7 +1,6 @@
 // Eigenvalues nearest to a point, and their vectors, by block Arnoldi on an inverse: the projected
 // matrix is solved densely, and starting with several vectors finds multiple eigenvalues.
-#ifndef BOUGH_CORE_BASE_EIGEN_H
-#define BOUGH_CORE_BASE_EIGEN_H
+#pragma once
 
 #include "core/base/block_tridiagonal.h"
 
@@ -66,5 +65,3 @@ typedef struct bough_eigen_problem {
 // does not converge.
 bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
                                   bough_eigen_pair *pair, int *found);
-
-#endif

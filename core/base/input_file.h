@@ -1,7 +1,6 @@
 // The one way to open a file that somebody else has written: only a plain file of bounded size is
 // opened, so that no reader waits for a pipe or reads from a device without end.
-#ifndef BOUGH_CORE_BASE_INPUT_FILE_H
-#define BOUGH_CORE_BASE_INPUT_FILE_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -19,5 +18,3 @@ FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_R
 // above.
 char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_t *size,
                        char reason[BOUGH_INPUT_REASON]);
-
-#endif

@@ -1,8 +1,7 @@
 // Elementary functions without branches, so that loops over them run in vector lanes, with
 // errors of a few units in the last place. Polynomials of sine, cosine and arc tangent are those of
 // fdlibm (Sun Microsystems, 1993).
-#ifndef BOUGH_CORE_BASE_LANES_H
-#define BOUGH_CORE_BASE_LANES_H
+#pragma once
 
 #include "core/base/rotation.h"
 
@@ -155,5 +154,3 @@ BOUGH_INLINE void lane_store_matrix(double *restrict a, int stride, int i, bough
     lane_store(a + 3 * stride, stride, i, m.c2);
     lane_store(a + 6 * stride, stride, i, m.c3);
 }
-
-#endif

@@ -2,8 +2,7 @@
 // it is compiled once for each level (CMakeLists.txt), and its functions' names end in the level's. When a
 // model is built, it notes the level that it calls, so that one program serves every processor. Results
 // differ between levels by rounding.
-#ifndef BOUGH_CORE_BASE_LEVEL_H
-#define BOUGH_CORE_BASE_LEVEL_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -40,5 +39,3 @@ bool bough_level_choose(bough_level *level);
 
 // The same for a model, which takes the highest in place of one that cannot be.
 bough_level bough_level_chosen(void);
-
-#endif

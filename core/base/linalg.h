@@ -1,7 +1,6 @@
 // Dense linear algebra for small systems; the only user of LAPACK, kept to one thread because the
 // callers run in parallel themselves.
-#ifndef BOUGH_CORE_BASE_LINALG_H
-#define BOUGH_CORE_BASE_LINALG_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/level.h"
@@ -102,5 +101,3 @@ bool bough_symmetric6_inverse(const double a[21], double inverse[21]);
 
 // Q A Qᵀ with Q = diag(R, R) for the rotation R by `angle` about z.
 void bough_symmetric6_rotate(const double a[21], double angle, double rotated[21]);
-
-#endif

@@ -13,8 +13,7 @@
 //
 // A waiting thread polls for about 0.5 ms, yielding its processor, and then sleeps; at once where another
 // program takes the processor, or if there are more threads than processors.
-#ifndef BOUGH_CORE_BASE_POOL_H
-#define BOUGH_CORE_BASE_POOL_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -43,5 +42,3 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
 
 // Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);
-
-#endif

@@ -1,6 +1,5 @@
 // Rotations: unit quaternions p = (w, x, y, z), their matrices, exponential, logarithm and their tangents.
-#ifndef BOUGH_CORE_BASE_ROTATION_H
-#define BOUGH_CORE_BASE_ROTATION_H
+#pragma once
 
 #include "core/base/vec3.h"
 
@@ -106,5 +105,3 @@ BOUGH_INLINE void bough_log_factors(double angle, double *beta, double *slope) {
     *beta = (1 - half * cotangent) / a2;
     *slope = (0.25 / (sine * sine) - 2 / a2 + 0.5 * cotangent / angle) / a2;
 }
-
-#endif

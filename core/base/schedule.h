@@ -1,6 +1,5 @@
 // Factors of loads and of the air over time: a ramp or a table.
-#ifndef BOUGH_CORE_BASE_SCHEDULE_H
-#define BOUGH_CORE_BASE_SCHEDULE_H
+#pragma once
 
 // 0 before start, 1 after end, linear between. A ramp without length is a jump from 0 to 1 at its time; with
 // both times 0 it is always 1.
@@ -20,5 +19,3 @@ typedef struct bough_schedule {
 } bough_schedule;
 
 double bough_schedule_at(const bough_schedule *s, double t);
-
-#endif

@@ -1,7 +1,6 @@
 // Memory that is copied out of where it lives and back. Each module lists once, in order,
 // what it keeps; the list serves to measure the copy, to save and to restore.
-#ifndef BOUGH_CORE_BASE_SNAPSHOT_H
-#define BOUGH_CORE_BASE_SNAPSHOT_H
+#pragma once
 
 #include <stddef.h>
 #include <string.h>
@@ -35,5 +34,3 @@ static inline void bough_snapshot_take(bough_snapshot *s, void *memory, size_t s
 static inline void bough_snapshot_doubles(bough_snapshot *s, double *x, int n) {
     bough_snapshot_take(s, x, (size_t)n * sizeof *x);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // Spatial algebra in six dimensions, linear part first: twists (v, ω), wrenches (force, moment),
 // rigid inertias and the placement of one frame in another. A twist belongs to the body's point
 // at the origin of the frame it is expressed in; so does the moment of a wrench.
-#ifndef BOUGH_CORE_BASE_SPATIAL_H
-#define BOUGH_CORE_BASE_SPATIAL_H
+#pragma once
 
 #include "core/base/vec3.h"
 
@@ -164,5 +163,3 @@ static inline void bough_wrench_store(bough_wrench w, double *out) {
 static inline bough_wrench bough_wrench_load(const double *in) {
     return (bough_wrench){{in[0], in[1], in[2]}, {in[3], in[4], in[5]}};
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Results of operations that can fail: a code and, when it is not BOUGH_OK, one message written
 // where the failure arose. Mistakes of the program are caught by asserts.
-#ifndef BOUGH_CORE_BASE_STATUS_H
-#define BOUGH_CORE_BASE_STATUS_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -40,5 +39,3 @@ static inline bool bough_is_ok(const bough_status *status) { return status->code
 
 // The exit code of the process for a final status.
 int bough_exit_code(bough_code code);
-
-#endif

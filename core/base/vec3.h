@@ -1,6 +1,5 @@
 // Vectors of three components, by value.
-#ifndef BOUGH_CORE_BASE_VEC3_H
-#define BOUGH_CORE_BASE_VEC3_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -65,5 +64,3 @@ BOUGH_INLINE bough_mat3 bough_mat3_transpose(bough_mat3 a) {
     return (bough_mat3){{a.c1.x, a.c2.x, a.c3.x}, {a.c1.y, a.c2.y, a.c3.y}, {a.c1.z, a.c2.z, a.c3.z}};
 }
 BOUGH_INLINE bough_mat3 bough_mat3_identity(void) { return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
-
-#endif

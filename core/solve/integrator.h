@@ -2,8 +2,7 @@
 //
 // A method gets a system under its inputs (a rod, the tree, two masses or a whole assembly) as
 // ẏ = f(t, y), together with solutions of (I − γ ∂f/∂y) x = b.
-#ifndef BOUGH_CORE_SOLVE_INTEGRATOR_H
-#define BOUGH_CORE_SOLVE_INTEGRATOR_H
+#pragma once
 
 #include "core/base/snapshot.h"
 #include "core/solve/system.h"
@@ -102,5 +101,3 @@ bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
 
 extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode, bough_integrator_arkode,
     bough_integrator_radau, bough_integrator_alpha, bough_integrator_rosenbrock, bough_integrator_automatic;
-
-#endif

@@ -1,7 +1,6 @@
 // The formulas of a step of the Rosenbrock method (core/solve/integrator_rosenbrock.c) over ranges of states,
 // for a caller that evaluates and solves a system of several members itself.
-#ifndef BOUGH_CORE_SOLVE_ROSENBROCK_H
-#define BOUGH_CORE_SOLVE_ROSENBROCK_H
+#pragma once
 
 #include "core/base/level.h"
 #include "core/solve/integrator.h"
@@ -58,5 +57,3 @@ BOUGH_DECLARE_LEVELS(bough_rosenbrock_increment);
     BOUGH_OF_LEVEL(bough_rosenbrock_error, (step)->level)(step, __VA_ARGS__)
 #define bough_rosenbrock_increment(step, ...)                                                                \
     BOUGH_OF_LEVEL(bough_rosenbrock_increment, (step)->level)(step, __VA_ARGS__)
-
-#endif

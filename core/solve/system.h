@@ -5,8 +5,7 @@
 // which provides f, h, their tangents and the solution of (I − γ ∂f/∂y) x = b. It has no current time
 // and state, no integrator and no factors: these belong to the caller. The result of a call does not
 // depend on earlier calls.
-#ifndef BOUGH_CORE_SOLVE_SYSTEM_H
-#define BOUGH_CORE_SOLVE_SYSTEM_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -90,5 +89,3 @@ typedef struct bough_system {
     const bough_system_ops *ops;
     void *self;
 } bough_system;
-
-#endif

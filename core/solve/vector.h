@@ -1,7 +1,6 @@
 // Vectors for SUNDIALS: the library's serial one with vectorised operations, as its own cost three
 // quarters of a rod's run. Only this file accesses the content of an N_Vector.
-#ifndef BOUGH_CORE_SOLVE_VECTOR_H
-#define BOUGH_CORE_SOLVE_VECTOR_H
+#pragma once
 
 #include <sundials/sundials_nvector.h>
 
@@ -16,5 +15,3 @@ bool bough_vector_room(int n);
 
 // The n components of a vector made by bough_vector_create.
 double *bough_vector_data(N_Vector v);
-
-#endif

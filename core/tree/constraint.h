@@ -1,8 +1,7 @@
 // The constraints of a joint, as equations between two frames a and b, which close a loop of bodies. With d =
 // R_aᵀ(r_b − r_a) and E = R_aᵀR_b an equation is either
 //     e·d = 0   or   a·E b = 0,   e, a fixed in the first frame, b in the second.
-#ifndef BOUGH_CORE_TREE_CONSTRAINT_H
-#define BOUGH_CORE_TREE_CONSTRAINT_H
+#pragma once
 
 #include "core/tree/joint.h"
 
@@ -39,5 +38,3 @@ static inline int bough_constraint_n_rows(const bough_constraint *c) {
 // All rows at one motion of the frames.
 void bough_constraint_rows(const bough_constraint *c, const bough_frame_motion *a,
                            const bough_frame_motion *b, bough_constraint_row *row);
-
-#endif

@@ -5,8 +5,7 @@
 // λ the parent, j the children, A the rate of V's components. Of a joint with prescribed motion v̇ is
 // given; Sᵀ f_i − τ is then what drives it.
 // Reference: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 to 7.
-#ifndef BOUGH_CORE_TREE_DYNAMICS_H
-#define BOUGH_CORE_TREE_DYNAMICS_H
+#pragma once
 
 #include "core/tree/tree.h"
 
@@ -46,5 +45,3 @@ void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, dou
 // data->acceleration and data->rotation. Along the motion's own rate they are the exact rates.
 void bough_tree_tangent(const bough_tree *tree, const double *state, const double *change,
                         bough_tree_data *data);
-
-#endif

@@ -1,8 +1,7 @@
 // Forces on the rigid tree besides those of joints and ports: springs and bushings between markers,
 // applied wrenches. Wrenches are on the tree at the marker's origin in marker axes; changes are
 // those along small changes of the markers' poses (twists in marker axes) and of their twists.
-#ifndef BOUGH_CORE_TREE_FORCE_H
-#define BOUGH_CORE_TREE_FORCE_H
+#pragma once
 
 #include "core/tree/tree.h"
 
@@ -33,5 +32,3 @@ double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, in
 bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k, double t);
 bough_wrench bough_applied_change(const bough_tree *tree, const bough_tree_data *data, int k, double t,
                                   bough_twist shift);
-
-#endif

@@ -16,8 +16,7 @@
 //
 // A universal joint's S is not constant: the tree replaces it by two revolute joints, and of the
 // functions below only the first four accept it.
-#ifndef BOUGH_CORE_TREE_JOINT_H
-#define BOUGH_CORE_TREE_JOINT_H
+#pragma once
 
 #include "core/base/spatial.h"
 
@@ -98,5 +97,3 @@ void bough_joint_normalise(const bough_joint *joint, double *q);
 
 // | |p| − 1 |; 0 without a quaternion.
 double bough_joint_drift(const bough_joint *joint, const double *q);
-
-#endif

@@ -9,8 +9,7 @@
 // the least of all that solve them, each measured by what it moves, so that units do not matter.
 // Reference: U. Ascher, H. Chin, L. Petzold, S. Reich, Stabilization of constrained mechanical
 // systems with DAEs and invariant manifolds, Mech. Struct. Mach. 23 (1995).
-#ifndef BOUGH_CORE_TREE_LOOP_H
-#define BOUGH_CORE_TREE_LOOP_H
+#pragma once
 
 #include "core/tree/tree.h"
 
@@ -58,5 +57,3 @@ bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *data);
 
 // The closures' equations at the data's poses and twists, into loops->row.
 void bough_loops_rows(const bough_tree *tree, bough_tree_data *data);
-
-#endif

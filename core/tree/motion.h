@@ -1,7 +1,6 @@
 // A joint coordinate q(t) that is given: its speed or itself constant, by a smooth ramp or by a
 // table. Every form is a cubic in pieces and one smooth ramp on top of it.
-#ifndef BOUGH_CORE_TREE_MOTION_H
-#define BOUGH_CORE_TREE_MOTION_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -41,5 +40,3 @@ void bough_motion_steer(bough_motion *motion, double t, double span, bough_motio
 
 // At a corner of a table the acceleration is that from then on.
 bough_motion_point bough_motion_at(const bough_motion *motion, double t);
-
-#endif

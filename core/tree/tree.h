@@ -2,8 +2,7 @@
 // loads, and the data of one evaluation. Bodies that cannot move relative to each other form one link, so
 // fixed joints cost no states and no work. tree_build.c builds the tree, force.h contains its forces,
 // dynamics.h the recursions, loop.h the closures.
-#ifndef BOUGH_CORE_TREE_TREE_H
-#define BOUGH_CORE_TREE_TREE_H
+#pragma once
 
 #include "core/base/schedule.h"
 #include "core/solve/system.h"
@@ -296,5 +295,3 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
 // from differences. In the arena; `name` is copied. Tolerance per state: rtol × (1 rad, 1 m, 1 of a
 // quaternion, 1 rad/s, 1 m/s).
 bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name);
-
-#endif

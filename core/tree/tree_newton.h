@@ -7,8 +7,7 @@
 // an acceleration of the ground, so that it needs no terms of its own. Springs and bushings, which
 // join links that are no neighbours, come in by a system of six unknowns for each of their ends
 // (Woodbury); a tree without them has none.
-#ifndef BOUGH_CORE_TREE_TREE_NEWTON_H
-#define BOUGH_CORE_TREE_TREE_NEWTON_H
+#pragma once
 
 #include "core/tree/tree.h"
 
@@ -26,5 +25,3 @@ bool bough_tree_newton_setup(bough_tree_newton *newton, bough_tree_data *data, d
 // Solves in place: x (n_q + n_v) holds r, then (δq, δv). The known change `a` of v̇ (n_v) may be
 // NULL for none.
 void bough_tree_newton_solve(bough_tree_newton *newton, const double *a, double *x);
-
-#endif

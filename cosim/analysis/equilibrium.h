@@ -3,8 +3,7 @@
 // of growing length γ, two Newton corrections each, which follow the motion downhill from the initial state
 // until, at the longest, they are Newton's method. An equilibrium near the initial state may be found though
 // it is unstable.
-#ifndef BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
-#define BOUGH_COSIM_ANALYSIS_EQUILIBRIUM_H
+#pragma once
 
 #include "cosim/whole.h"
 
@@ -46,5 +45,3 @@ typedef struct bough_equilibrium_report {
 // the state that still moves, `state` is the last one reached.
 bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, const bough_equilibrium_def *def,
                                     double *state, bough_equilibrium_report *report);
-
-#endif

@@ -8,8 +8,7 @@
 //     −S,  S_kl = (Ω/n) Σ_h i h exp(i 2πh (k − l)/n),  |h| <= (n − 1)/2,
 // in the parts' own coordinates, at whatever azimuth. If the parts are equal and evenly spaced and
 // what carries them is symmetric, J − S is the constant matrix of the transformed system.
-#ifndef BOUGH_COSIM_ANALYSIS_MODES_H
-#define BOUGH_COSIM_ANALYSIS_MODES_H
+#pragma once
 
 #include "core/base/eigen.h"
 #include "cosim/whole.h"
@@ -35,5 +34,3 @@ void bough_modes_rate(const bough_modes_def *def, double *rate);
 // spin is too fast for the point: it should be several times the largest h Ω.
 bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def,
                               bough_eigen_pair *pair, bough_eigen_count *count);
-
-#endif

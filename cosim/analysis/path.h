@@ -6,8 +6,7 @@
 //     J δy + ∂F/∂λ δλ = −F,   ⟨δ, tangent⟩ = 0,
 // by two solutions with the factors of the whole, those of the loads at λ end. E. Riks, An incremental
 // approach to the solution of snapping and buckling problems, Int. J. Solids Struct. 15 (1979).
-#ifndef BOUGH_COSIM_ANALYSIS_PATH_H
-#define BOUGH_COSIM_ANALYSIS_PATH_H
+#pragma once
 
 #include "cosim/whole.h"
 
@@ -38,5 +37,3 @@ typedef struct bough_path_report {
 // last point.
 bough_status bough_path_follow(bough_arena *arena, bough_whole *whole, const bough_path_def *def,
                                double *state, bough_path_report *report);
-
-#endif

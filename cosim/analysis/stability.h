@@ -7,8 +7,7 @@
 // The analysis leaves out loads from outside the members, such as aerodynamic damping (so it is
 // conservative), changes of the state during the run, and growth without oscillation, which belongs to the
 // mechanics: a free rotation, an inverted pendulum.
-#ifndef BOUGH_COSIM_ANALYSIS_STABILITY_H
-#define BOUGH_COSIM_ANALYSIS_STABILITY_H
+#pragma once
 
 #include "cosim/assembly.h"
 #include "cosim/coupling.h"
@@ -58,5 +57,3 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
 // it is.
 void bough_linear_member_create(bough_arena *arena, const bough_member *real, const double *input,
                                 double sub_step, bough_member *linear);
-
-#endif

@@ -1,7 +1,6 @@
 // Watches a coupled run: values that are not finite, the interface defect and the energy residual as measures
 // of the coupling error, the growth of an unstable coupling; and finds why a member fails.
-#ifndef BOUGH_COSIM_WATCH_MONITOR_H
-#define BOUGH_COSIM_WATCH_MONITOR_H
+#pragma once
 
 #include "cosim/analysis/stability.h"
 #include "cosim/coupling.h"
@@ -48,5 +47,3 @@ void bough_monitor_undo(const bough_monitor *m, bough_coupling *c);
 // run; if that found nothing, the kept states are analysed, because the members' own states are lost.
 bough_status bough_monitor_explain(const bough_monitor *m, bough_coupling *c,
                                    const bough_stability_advice *before, bough_status cause);
-
-#endif

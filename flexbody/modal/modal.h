@@ -10,8 +10,7 @@
 //     η̇ = −Λ q − D q̇ − ω_a B_a η + (ω_a ω_b N_ab + a_k T_k + f_k F_k) q
 //         + ω_a ω_b r_ab + C_tᵀ g + Φᵀf
 // to first order in q; a = ω×u₀ − g the apparent acceleration, f_k a force at the last vertex.
-#ifndef BOUGH_FLEXBODY_MODAL_MODAL_H
-#define BOUGH_FLEXBODY_MODAL_MODAL_H
+#pragma once
 
 #include "flexbody/rod/rod.h"
 
@@ -55,5 +54,3 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
 
 // Λ, D and the shapes, which go to piece->shape with rotations in frame axes.
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);
-
-#endif

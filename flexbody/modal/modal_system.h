@@ -5,8 +5,7 @@
 //
 // State: per piece q (m), then η (m). Ports, loads and the state of vertices are those of a rod
 // (rod_system.h), but there are no follower loads.
-#ifndef BOUGH_FLEXBODY_MODAL_MODAL_SYSTEM_H
-#define BOUGH_FLEXBODY_MODAL_MODAL_SYSTEM_H
+#pragma once
 
 #include "core/base/spatial.h"
 #include "core/solve/system.h"
@@ -133,5 +132,3 @@ const double *bough_modal_body_vertices(bough_modal_body *body, const double *st
 
 // ∂f/∂y (n_state × n_state, by columns) of the last linearisation into these factors of the body's system.
 const double *bough_modal_jacobian(const void *factors);
-
-#endif

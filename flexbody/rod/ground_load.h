@@ -1,7 +1,6 @@
 // Loads on a rod or a modal body that keep their directions in the ground while the body's frame turns: a
 // system around the body's own, with the ground's axes as nine more inputs.
-#ifndef BOUGH_FLEXBODY_ROD_GROUND_LOAD_H
-#define BOUGH_FLEXBODY_ROD_GROUND_LOAD_H
+#pragma once
 
 #include "core/solve/system.h"
 #include "flexbody/rod/rod_load.h"
@@ -30,5 +29,3 @@ void bough_ground_body_load(bough_ground_body *body, bough_arena *arena, const b
 
 // Resolves all loads in BRF axes for these ground axes (9), as readers of the body's loads need.
 void bough_ground_body_turn(bough_ground_body *body, const double *axes);
-
-#endif

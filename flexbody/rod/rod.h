@@ -11,8 +11,7 @@
 //     u  absolute velocity, in BRF axes [m/s]                       theory (11)
 //     W  absolute angular velocity, in section axes [rad/s]         theory (11)
 // State arrays are component-major: state[c·N + i], c = x₁₋₃ p₀₋₃ u₁₋₃ W₁₋₃, i = vertex − 1.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_H
-#define BOUGH_FLEXBODY_ROD_ROD_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/level.h"
@@ -291,5 +290,3 @@ BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
 #define bough_rod_root_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_root_wrench, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_wrenches(m, ...) BOUGH_OF_LEVEL(bough_rod_wrenches, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_line_strain(m, ...) BOUGH_OF_LEVEL(bough_rod_line_strain, (m)->level)(m, __VA_ARGS__)
-
-#endif

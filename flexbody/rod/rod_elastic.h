@@ -8,8 +8,7 @@
 // stiffness. The sections lean against the segment's middle where it bends, so that its axis is longer than
 // by the strains of the middle: e₃ is larger by ½ q·B q, q shear and bending of the segment, theory (107).
 // Inline, for loops over lanes.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
-#define BOUGH_FLEXBODY_ROD_ROD_ELASTIC_H
+#pragma once
 
 #include "flexbody/rod/rod_segment.h"
 
@@ -140,5 +139,3 @@ BOUGH_INLINE strain elastic_variation(const double *restrict c, const double *re
 }
 
 #undef L
-
-#endif

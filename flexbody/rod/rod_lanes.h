@@ -1,6 +1,5 @@
 // Vertices and segments in structures of arrays: loads and stores for loops over vector lanes.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_LANES_H
-#define BOUGH_FLEXBODY_ROD_ROD_LANES_H
+#pragma once
 
 #include "core/base/lanes.h"
 #include "flexbody/rod/rod.h"
@@ -187,5 +186,3 @@ BOUGH_INLINE segment_force segment_tangent(const bough_rod_model *m, const bough
                             bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), *dl, *dr,
                             lane_load(m->strain0 + 3 * s, s, n), lane_load(scratch->following, s, n));
 }
-
-#endif

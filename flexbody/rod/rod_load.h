@@ -1,6 +1,5 @@
 // Forces and moments along a rod as work-equivalent loads on its vertices.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_LOAD_H
-#define BOUGH_FLEXBODY_ROD_ROD_LOAD_H
+#pragma once
 
 #include "flexbody/rod/rod.h"
 
@@ -36,5 +35,3 @@ void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const
 // A kernel, called at its model's level.
 BOUGH_DECLARE_LEVELS(bough_rod_take_line);
 #define bough_rod_take_line(m, ...) BOUGH_OF_LEVEL(bough_rod_take_line, (m)->level)(m, __VA_ARGS__)
-
-#endif

@@ -1,6 +1,5 @@
 // Natural modes of a rod, clamped at its root, about its equilibrium at rest or in steady rotation.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_MODES_H
-#define BOUGH_FLEXBODY_ROD_ROD_MODES_H
+#pragma once
 
 #include "flexbody/rod/rod_static.h"
 
@@ -35,5 +34,3 @@ typedef struct bough_rod_mode_list {
 // left in `work`.
 bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough_rod_static *work,
                              const double *input, const double *state, bough_rod_mode_list *list);
-
-#endif

@@ -10,8 +10,7 @@
 //     δφ = H (b − a),  H = ½ (c E − g v vᵀ),  g = (c − 2)/(1 − w²)
 // The chord y = R_midᵀ Δx/h of a bent segment is shorter than its axis: V = y − v×(v×y)/6, that of
 // constant strains to fourth order in φ. So tension stiffens the bow within a segment.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_SEGMENT_H
-#define BOUGH_FLEXBODY_ROD_ROD_SEGMENT_H
+#pragma once
 
 #include "core/base/rotation.h"
 
@@ -308,5 +307,3 @@ BOUGH_INLINE segment_force force_variation(segment_geometry s, segment_variation
     f.lr = bough_scale(-1, half_backward_variation(s, d, b, db));
     return f;
 }
-
-#endif

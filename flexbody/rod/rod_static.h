@@ -1,8 +1,7 @@
 // Equilibrium of a rod whose root is held, at rest or in steady rotation: Newton–Raphson on the
 // analytic tangent, unsymmetric under follower loads, with increments of load, following large
 // rotations.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_STATIC_H
-#define BOUGH_FLEXBODY_ROD_ROD_STATIC_H
+#pragma once
 
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_tangent.h"
@@ -60,5 +59,3 @@ void bough_rod_move(const bough_rod_model *m, const double *change, double fract
 
 // The largest rotation of a vertex in a change [rad].
 double bough_rod_turn(const bough_rod_model *m, const double *change);
-
-#endif

@@ -1,8 +1,7 @@
 // A rod behind the contract of core/solve/system.h: kind "rod". Inputs are the twist of the body
 // reference frame and gravity, in its axes; outputs the root wrench on the carrier, in its axes. The state is
 // rod.h's. Of a rod that carries bodies the motion of its last vertex and the wrench there follow, see rod.h.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_SYSTEM_H
-#define BOUGH_FLEXBODY_ROD_ROD_SYSTEM_H
+#pragma once
 
 #include "core/solve/system.h"
 #include "flexbody/rod/rod.h"
@@ -20,5 +19,3 @@ bough_system bough_rod_body_system(bough_rod_body *body);
 bough_rod_loads *bough_rod_body_loads(bough_rod_body *body);
 
 const bough_rod_model *bough_rod_body_model(const bough_rod_body *body);
-
-#endif

@@ -5,8 +5,7 @@
 // K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
 // configuration increments. Tangents are found per segment and per vertex as structures of arrays and
 // then put into blocks, of which each factorisation forms its matrix.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_TANGENT_H
-#define BOUGH_FLEXBODY_ROD_ROD_TANGENT_H
+#pragma once
 
 #include "core/base/block_tridiagonal.h"
 #include "flexbody/rod/rod.h"
@@ -98,5 +97,3 @@ BOUGH_DECLARE_LEVELS(bough_rod_solve);
 #define bough_rod_linearise(m, ...) BOUGH_OF_LEVEL(bough_rod_linearise, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_factor(m, ...) BOUGH_OF_LEVEL(bough_rod_factor, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_solve(m, ...) BOUGH_OF_LEVEL(bough_rod_solve, (m)->level)(m, __VA_ARGS__)
-
-#endif

@@ -1,6 +1,5 @@
 // How the arrays of a bough_rod_tangent are laid out: shared by the files that fill and use them.
-#ifndef BOUGH_FLEXBODY_ROD_ROD_TANGENT_LAYOUT_H
-#define BOUGH_FLEXBODY_ROD_ROD_TANGENT_LAYOUT_H
+#pragma once
 
 #include "core/base/base.h"
 
@@ -64,5 +63,3 @@ BOUGH_INLINE void turn_tile(const double *from, int stride, double *to, int to_s
         }
     }
 }
-
-#endif

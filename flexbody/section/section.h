@@ -1,7 +1,6 @@
 // Section tables of a rod and their discretisation: stiffness integrated over segments, inertia
 // over the half-segments of each vertex. Between stations everything is linear in arc length.
-#ifndef BOUGH_FLEXBODY_SECTION_SECTION_H
-#define BOUGH_FLEXBODY_SECTION_SECTION_H
+#pragma once
 
 #include "flexbody/rod/rod.h"
 
@@ -35,5 +34,3 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
 
 // The whole rod as one rigid body, in the BRF about its origin: first moment and tensor.
 bough_vertex_inertia bough_section_rigid(const bough_rod_def *def);
-
-#endif

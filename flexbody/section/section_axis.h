@@ -1,7 +1,6 @@
 // The reference axis of a section table by arc length: sections on it and integrals along it; for
 // section*.c only.
-#ifndef BOUGH_FLEXBODY_SECTION_SECTION_AXIS_H
-#define BOUGH_FLEXBODY_SECTION_SECTION_AXIS_H
+#pragma once
 
 #include "flexbody/section/section.h"
 
@@ -57,5 +56,3 @@ typedef struct bough_section_mass {
 // segment (N), gain is the mass of its left vertex beyond lumping by hat functions.
 void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
                         const bough_section_mass *gain, bough_vertex_inertia *vertex);
-
-#endif

@@ -1,6 +1,5 @@
 // What a fuzz target is given and must give; the same for libFuzzer and for tests/fuzz/driver.c.
-#ifndef BOUGH_TESTS_FUZZ_FUZZ_H
-#define BOUGH_TESTS_FUZZ_FUZZ_H
+#pragma once
 
 #include "tests/unit/scratch_name.h"
 
@@ -48,5 +47,3 @@ static inline const char *fuzz_file(const char *name, const void *data, size_t s
     fclose(file);
     return path;
 }
-
-#endif

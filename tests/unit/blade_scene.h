@@ -1,6 +1,5 @@
 // The clamped blade of the NREL 5 MW turbine, of any number of segments.
-#ifndef BOUGH_TESTS_UNIT_BLADE_SCENE_H
-#define BOUGH_TESTS_UNIT_BLADE_SCENE_H
+#pragma once
 
 #include "tests/unit/built_scene.h"
 
@@ -9,5 +8,3 @@ static inline bough_simulation *blade_scene(bough_arena *arena, int segments) {
     snprintf(set, sizeof set, "bodies[0].rod.segments=%d", segments);
     return scene_build(arena, "tests/data/scenes/blade.yaml", sets_of(set));
 }
-
-#endif

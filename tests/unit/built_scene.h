@@ -1,6 +1,5 @@
 // A simulation of a scene file with values replaced, for tests that start from a whole scene.
-#ifndef BOUGH_TESTS_UNIT_BUILT_SCENE_H
-#define BOUGH_TESTS_UNIT_BUILT_SCENE_H
+#pragma once
 
 #include "apps/bough/model/run.h"
 #include "tests/unit/check.h"
@@ -120,5 +119,3 @@ static inline double channel(built *b, const char *name) { return scene_channel(
 static inline void run_until(built *b, double t) {
     while (b->s->master->time < t - 1e-9) scene_step(b->s);
 }
-
-#endif

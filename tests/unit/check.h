@@ -5,8 +5,7 @@
 //
 // is a test that check.c runs. TEST_WITH gives it a set-up and a tear-down of its own, which pass it
 // *context; GROUP those of all tests of the file.
-#ifndef BOUGH_TESTS_UNIT_CHECK_H
-#define BOUGH_TESTS_UNIT_CHECK_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -77,5 +76,3 @@ static inline void check_near_at(double value, double expected, double relative,
     print_error("%s = %.15g, expected %.15g (off by %.3g)\n", what, value, expected, value - expected);
     _fail(file, line);
 }
-
-#endif

@@ -1,7 +1,6 @@
 // What every system and every member must fulfil, checked at a time, state and input where f is smooth.
 // `tolerance` is relative to the largest entry of what is compared; 1e-5 suits central differences.
-#ifndef BOUGH_TESTS_UNIT_CONTRACT_H
-#define BOUGH_TESTS_UNIT_CONTRACT_H
+#pragma once
 
 #include "cosim/member.h"
 #include "tests/unit/member.h"
@@ -308,5 +307,3 @@ static inline void contract_check(bough_member *m, contract_point at, double gam
     contract_save_restore(m, at, length, true);
     contract_save_restore(m, at, length, false);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The files of the small turbine of tests/data/decks, by OpenFAST's versions 3, 4 and 5.
-#ifndef BOUGH_TESTS_UNIT_DECKS_H
-#define BOUGH_TESTS_UNIT_DECKS_H
+#pragma once
 
 static const char *const decks[] = {
     "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
@@ -12,5 +11,3 @@ static const char *const decks[] = {
 };
 static const char *const deck_folders[] = {"parts/foils", "v4", "v5"};
 enum { N_DECK = sizeof decks / sizeof *decks, N_DECK_FOLDER = 3 };
-
-#endif

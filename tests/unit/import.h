@@ -1,6 +1,5 @@
 // Importing changed decks, and what comes of it.
-#ifndef BOUGH_TESTS_UNIT_IMPORT_H
-#define BOUGH_TESTS_UNIT_IMPORT_H
+#pragma once
 
 #include "tests/unit/scratch.h"
 
@@ -129,5 +128,3 @@ static inline void check_same_file(const trial *a, const trial *b, const char *n
 static const char *const results[] = {"scene.yaml", "blade-structure.yaml", "airfoils.yaml",
                                       "tower-structure.yaml", "blade-aero.yaml"};
 enum { N_RESULT = sizeof results / sizeof *results };
-
-#endif

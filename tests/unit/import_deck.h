@@ -1,6 +1,5 @@
 // The small turbine of tests/data/decks in a scratch folder, changed, and imported.
-#ifndef BOUGH_TESTS_UNIT_IMPORT_DECK_H
-#define BOUGH_TESTS_UNIT_IMPORT_DECK_H
+#pragma once
 
 #include "tests/unit/decks.h"
 #include "tests/unit/import.h"
@@ -70,5 +69,3 @@ static inline trial import_with(const edit *one, const edit *two) {
 static const edit by_modes = {"main.fst", "2    CompElast", "1    CompElast"};
 
 static inline trial import(const edit *change) { return import_with(change, NULL); }
-
-#endif

@@ -1,6 +1,5 @@
 // An integrator stepped by itself, for tests.
-#ifndef BOUGH_TESTS_UNIT_INTEGRATOR_H
-#define BOUGH_TESTS_UNIT_INTEGRATOR_H
+#pragma once
 
 #include "core/solve/integrator.h"
 
@@ -8,5 +7,3 @@ static inline bough_status integrator_advance(const bough_integrator *i, double 
                                               double *y) {
     return i->ops->advance(i->self, &t, t1, restart, y);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Members for tests.
-#ifndef BOUGH_TESTS_UNIT_MEMBER_H
-#define BOUGH_TESTS_UNIT_MEMBER_H
+#pragma once
 
 #include "cosim/member.h"
 #include "tests/unit/check.h"
@@ -27,5 +26,3 @@ static inline char *member_save(bough_arena *arena, bough_member *m) {
 static inline void member_restore(bough_member *m, char *copy) {
     bough_member_snapshot(m, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0});
 }
-
-#endif

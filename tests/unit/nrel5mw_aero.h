@@ -1,7 +1,6 @@
 // The NREL 5 MW reference blade as aerodynamics sees it: stations of J. Jonkman et al., NREL/TP-500-38060
 // (2009), with the aerodynamic centres of its AeroDyn model, and the airfoil tables of apps/turbine/.
-#ifndef BOUGH_TESTS_UNIT_NREL5MW_AERO_H
-#define BOUGH_TESTS_UNIT_NREL5MW_AERO_H
+#pragma once
 
 #include "aero/rotor/rotor.h"
 #include "tests/unit/check.h"
@@ -95,5 +94,3 @@ static inline void nrel5mw_stations(bough_station_def *station, bool flat) {
                                          .polar = (int)b[5]};
     }
 }
-
-#endif

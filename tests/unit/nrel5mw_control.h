@@ -1,7 +1,6 @@
 // The law of variable speed of the NREL 5 MW turbine: J. Jonkman et al., NREL/TP-500-38060 (2009); the
 // defaults of a scene.
-#ifndef BOUGH_TESTS_UNIT_NREL5MW_CONTROL_H
-#define BOUGH_TESTS_UNIT_NREL5MW_CONTROL_H
+#pragma once
 
 #include "aero/control/controller.h"
 
@@ -21,5 +20,3 @@ static const bough_controller_def nrel5mw_control = {.corner = 1.570796,
                                                      .halving_pitch = 0.1099965,
                                                      .most_pitch = 1.570796,
                                                      .pitch_rate = 0.1396263};
-
-#endif

@@ -1,6 +1,5 @@
 // The induction at one blade element, which fills the lanes alone.
-#ifndef BOUGH_TESTS_UNIT_ONE_ELEMENT_H
-#define BOUGH_TESTS_UNIT_ONE_ELEMENT_H
+#pragma once
 
 #include "aero/rotor/induction.h"
 
@@ -29,5 +28,3 @@ static inline bough_induction induction_at(const bough_induction_options *option
     int evaluations = bough_induction_solve(options, &copies, axial, tangential, loss);
     return (bough_induction){axial[0], tangential[0], loss[0], evaluations};
 }
-
-#endif

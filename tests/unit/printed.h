@@ -1,6 +1,5 @@
 // What errors print, in their arena.
-#ifndef BOUGH_TESTS_UNIT_PRINTED_H
-#define BOUGH_TESTS_UNIT_PRINTED_H
+#pragma once
 
 #include "apps/bough/config/text.h"
 
@@ -16,5 +15,3 @@ static inline const char *printed_errors(const bough_errors *errors) {
     free(text);
     return copy;
 }
-
-#endif

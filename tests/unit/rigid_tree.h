@@ -1,6 +1,5 @@
 // Trees for tests: built as members, and one that holds everything a tree may.
-#ifndef BOUGH_TESTS_UNIT_RIGID_TREE_H
-#define BOUGH_TESTS_UNIT_RIGID_TREE_H
+#pragma once
 
 #include "tests/unit/member.h"
 #include "tests/unit/sample_numbers.h"
@@ -118,5 +117,3 @@ static inline fixture everything(double rtol) {
 }
 
 static const double some_input[12] = {1, -2, 0.5, 0.3, 0.8, -0.6, -1, 0.4, 2, 0.7, -0.1, 0.9};
-
-#endif

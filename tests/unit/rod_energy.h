@@ -1,6 +1,5 @@
 // The elastic energy of a rod, for balances: no run needs it.
-#ifndef BOUGH_TESTS_UNIT_ROD_ENERGY_H
-#define BOUGH_TESTS_UNIT_ROD_ENERGY_H
+#pragma once
 
 #include "flexbody/rod/rod_lanes.h"
 
@@ -25,5 +24,3 @@ static inline double rod_elastic_energy(const bough_rod_model *m, const bough_ro
     }
     return energy;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // A rigid rotor of the NREL 5 MW turbine for tests of the aerodynamics: placed, moved and sampled.
-#ifndef BOUGH_TESTS_UNIT_ROTOR_RIG_H
-#define BOUGH_TESTS_UNIT_ROTOR_RIG_H
+#pragma once
 
 #include "aero/rotor/rotor.h"
 #include "core/base/rotation.h"
@@ -154,5 +153,3 @@ static inline rig *create_flat_rig(void) {
     r->def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
     return r;
 }
-
-#endif

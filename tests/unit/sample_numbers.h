@@ -1,6 +1,5 @@
 // Reproducible numbers, and vectors compared with what is expected of them.
-#ifndef BOUGH_TESTS_UNIT_SAMPLE_NUMBERS_H
-#define BOUGH_TESTS_UNIT_SAMPLE_NUMBERS_H
+#pragma once
 
 #include "core/base/vec3.h"
 #include "tests/unit/check.h"
@@ -18,5 +17,3 @@ static inline void check_vec3(bough_vec3 value, bough_vec3 expected, double rela
     check_near(value.y, expected.y, relative, absolute);
     check_near(value.z, expected.z, relative, absolute);
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Rods for the tests: a uniform straight one and a curved, twisted, fully coupled one.
-#ifndef BOUGH_TESTS_UNIT_SAMPLE_ROD_H
-#define BOUGH_TESTS_UNIT_SAMPLE_ROD_H
+#pragma once
 
 #include "flexbody/rod/rod_static.h"
 #include "tests/unit/sample_numbers.h"
@@ -167,5 +166,3 @@ static inline bough_status rod_equilibrium(const bough_rod_model *m, const bough
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
     return bough_rod_steady(m, loads, input, options, work, state);
 }
-
-#endif

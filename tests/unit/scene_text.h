@@ -1,7 +1,6 @@
 // Scenes that tests read: files of the source, and texts written into a directory of their own, so
 // that paths in messages are short.
-#ifndef BOUGH_TESTS_UNIT_SCENE_TEXT_H
-#define BOUGH_TESTS_UNIT_SCENE_TEXT_H
+#pragma once
 
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"
@@ -86,5 +85,3 @@ static inline fixture accepts(const char *text) { return refuses(text, ""); }
     "  - {name: b1, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: &r {length: 5,\n"                 \
     "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                                      \
     "  - {name: b2, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: *r}\n"
-
-#endif

@@ -1,6 +1,5 @@
 // A folder of its own for a test that writes files, and the files' text.
-#ifndef BOUGH_TESTS_UNIT_SCRATCH_H
-#define BOUGH_TESTS_UNIT_SCRATCH_H
+#pragma once
 
 #include "tests/unit/check.h"
 #include "tests/unit/scratch_name.h"
@@ -87,5 +86,3 @@ static inline bool scratch_has(const char *folder, const char *name) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     return access(path, F_OK) == 0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // A name for mkdtemp or mkstemp in $TMPDIR, else in /tmp.
-#ifndef BOUGH_TESTS_UNIT_SCRATCH_NAME_H
-#define BOUGH_TESTS_UNIT_SCRATCH_NAME_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,5 +11,3 @@ static inline char *scratch_name(char name[SCRATCH_NAME]) {
     snprintf(name, SCRATCH_NAME, "%s/bough-test-XXXXXX", folder && *folder ? folder : "/tmp");
     return name;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // Studies of a test's own: written into its folder, read and performed there.
-#ifndef BOUGH_TESTS_UNIT_STUDY_H
-#define BOUGH_TESTS_UNIT_STUDY_H
+#pragma once
 
 #include "apps/bough/cases/perform.h"
 #include "tests/unit/scratch.h"
@@ -64,5 +63,3 @@ static inline int count_in(const char *folder, const char *name, const char *wha
 
 // Results in the folder, those of references among them.
 static inline int count_results(const char *folder) { return scratch_files(folder, "cases", ".case", NULL); }
-
-#endif

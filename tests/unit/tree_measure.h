@@ -1,7 +1,6 @@
 // Sums, mass matrix and closures' errors of a tree, for tests. All are taken after
 // bough_tree_kinematics at the same state.
-#ifndef BOUGH_TESTS_UNIT_TREE_MEASURE_H
-#define BOUGH_TESTS_UNIT_TREE_MEASURE_H
+#pragma once
 
 #include "core/tree/loop.h"
 
@@ -95,5 +94,3 @@ static inline int tree_find_body(const bough_tree *tree, const char *name) {
     while (i >= 0 && strcmp(tree->bodies[i].name, name) != 0) i--;
     return i;
 }
-
-#endif

@@ -1,6 +1,5 @@
 // The two-mass oscillator for tests: its runs, and an exact run that must succeed.
-#ifndef BOUGH_TESTS_UNIT_TWO_MASS_H
-#define BOUGH_TESTS_UNIT_TWO_MASS_H
+#pragma once
 
 #include "tests/unit/check.h"
 #include "tests/verification/two_mass.h"
@@ -47,5 +46,3 @@ static const struct {
 } polynomial_limits[] = {{"polynomial", {.0777, .3175, .2839}},
                          {"polynomial-reversed", {.0777, .3069, .2831}},
                          {"polynomial-at-once", {.2254, .2277, .2501}}};
-
-#endif

@@ -1,8 +1,7 @@
 // A study of kind blade-models: one blade modelled in several ways against a converged reference. The
 // clamped blade under a load: deflection, twist and frequencies, undeformed and about the bent
 // shape. A run of the turbine: differences over the run and processor time, runs interleaved.
-#ifndef BOUGH_TESTS_VERIFICATION_BLADE_MODELS_H
-#define BOUGH_TESTS_VERIFICATION_BLADE_MODELS_H
+#pragma once
 
 #include "tests/verification/verification.h"
 
@@ -13,5 +12,3 @@ void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_
 // Prints the table and writes blade-models.csv.
 bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
                                         const bough_verification_options *options);
-
-#endif

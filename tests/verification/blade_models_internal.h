@@ -1,6 +1,5 @@
 // What the files of a study of blade models share among themselves.
-#ifndef BOUGH_TESTS_VERIFICATION_BLADE_MODELS_INTERNAL_H
-#define BOUGH_TESTS_VERIFICATION_BLADE_MODELS_INTERNAL_H
+#pragma once
 
 #include "apps/bough/cases/case_run.h"
 #include "tests/verification/blade_models.h"
@@ -46,5 +45,3 @@ bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const
 // Its equilibrium under the load, and its frequencies.
 bough_status bough_model_blade_find(bough_arena *arena, const bough_blade_models *study,
                                     const bough_blade_model *model, bough_model_blade *blade);
-
-#endif

@@ -1,7 +1,6 @@
 // Equilibrium and natural frequencies of a modal body whose root is held, at rest or in steady
 // rotation: what rod_static.h and rod_modes.h are for a rod.
-#ifndef BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
-#define BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
+#pragma once
 
 #include "flexbody/modal/modal_system.h"
 
@@ -17,5 +16,3 @@ bough_status bough_modal_steady(bough_modal_body *body, double t, const double *
 bough_status bough_modal_frequencies(bough_arena *arena, bough_modal_body *body, double t,
                                      const double *input, const double *state, int wanted, double *frequency,
                                      int *found);
-
-#endif

@@ -1,8 +1,7 @@
 // Masses with springs as members: linear, of two states or none, integrated exactly to rounding
 // (Taylor series of the state under the cubic input). What the studies of coupling schemes and their
 // tests are made of.
-#ifndef BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
-#define BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
+#pragma once
 
 #include "cosim/member.h"
 
@@ -42,5 +41,3 @@ bough_system bough_oscillator_system(bough_oscillator *o, const char *name);
 
 // A member that integrates it exactly, with its state at o->y; both stay where they are.
 void bough_oscillator_member(bough_oscillator *o, const char *name, bough_member *member);
-
-#endif

@@ -1,7 +1,6 @@
 // Two masses on springs to the walls and a spring between them, cut in two and coupled by a scheme:
 // the linear model on which schemes are compared, with its exact solution.
-#ifndef BOUGH_TESTS_VERIFICATION_TWO_MASS_H
-#define BOUGH_TESTS_VERIFICATION_TWO_MASS_H
+#pragma once
 
 #include "cosim/master.h"
 #include "tests/verification/oscillator.h"
@@ -45,5 +44,3 @@ bough_status bough_two_mass_error(bough_two_mass *m, double *worst);
 // Largest modulus of the eigenvalues of one macro step, of any length, as a map of states and
 // remembered inputs. The run's state is lost.
 bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double *radius);
-
-#endif

@@ -1,7 +1,6 @@
 // The project's verification of itself: studies of test models, exact solutions and other programs'
 // figures, read from YAML as other studies are.
-#ifndef BOUGH_TESTS_VERIFICATION_VERIFICATION_H
-#define BOUGH_TESTS_VERIFICATION_VERIFICATION_H
+#pragma once
 
 #include "apps/bough/config/text.h"
 #include "core/base/arena.h"
@@ -38,5 +37,3 @@ bough_status bough_verification_read(bough_arena *arena, const char *path, bough
 // the expected one, BOUGH_INTERRUPTED when stopped.
 bough_status bough_verification_perform(bough_arena *arena, const bough_verification *verification,
                                         const bough_verification_options *options);
-
-#endif

@@ -1,7 +1,6 @@
 // A study of kind verify: cases that are each a scene, what to do with it, and what should come out
 // by another program, an exact solution or a conservation law.
-#ifndef BOUGH_TESTS_VERIFICATION_VERIFY_H
-#define BOUGH_TESTS_VERIFICATION_VERIFY_H
+#pragma once
 
 #include "apps/bough/cases/study.h"
 #include "apps/bough/scene/scene.h"
@@ -101,5 +100,3 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
 // one does not hold.
 bough_status bough_verify_perform(bough_arena *arena, const void *study,
                                   const bough_verification_options *options);
-
-#endif

@@ -1,8 +1,7 @@
 // Modes of the whole scene and its air about a steady state, as an observer at rest sees them where a rotor
 // turns (cosim/analysis/modes.h): eigenvalues of the full linear system of the members' states and those of
 // the air, whose forces couple all (air_tangent.h), theory (77, 100).
-#ifndef BOUGH_APPS_ANALYSIS_AEROELASTIC_H
-#define BOUGH_APPS_ANALYSIS_AEROELASTIC_H
+#pragma once
 
 #include "apps/bough/analysis/air_tangent.h"
 #include "apps/bough/model/blade_group.h"
@@ -52,5 +51,3 @@ typedef struct bough_known_modes {
 // of which less than half is in one mode there. BOUGH_FAILED where the system is singular about its point.
 bough_status bough_mesh_change_find(bough_arena *arena, const bough_known_modes *known,
                                     const bough_aeroelastic *system, double complex *there);
-
-#endif

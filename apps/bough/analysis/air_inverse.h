@@ -1,8 +1,7 @@
 // (I − γ(J − S + A))⁻¹ about the point of a search for modes in the air, theory (77, 109): what the air
 // couples is a dense matrix, in blocks where a rotor's blades are equal (blade_inverse.c), for a tenth of the
 // operations.
-#ifndef BOUGH_APPS_ANALYSIS_AIR_INVERSE_H
-#define BOUGH_APPS_ANALYSIS_AIR_INVERSE_H
+#pragma once
 
 #include "apps/bough/analysis/aeroelastic.h"
 
@@ -53,5 +52,3 @@ bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aero
 // Images of n vectors (n × n_state), one after the other, by the inverse or its transpose.
 void bough_air_inverse_apply(bough_air_inverse *inverse, bool transposed, int n, const double *z,
                              double *image);
-
-#endif

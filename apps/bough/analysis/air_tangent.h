@@ -3,8 +3,7 @@
 //     ẏ = … + A y + R m ,   ṁ = G y + H m + K u ,
 // y the states of all members, m those of the air: delayed inductions, shed wakes, lags of pressure and
 // separation (rotor.h). Quasi-steady air has no m: inductions and lift follow without delay.
-#ifndef BOUGH_APPS_ANALYSIS_AIR_TANGENT_H
-#define BOUGH_APPS_ANALYSIS_AIR_TANGENT_H
+#pragma once
 
 #include "apps/bough/model/blade_group.h"
 #include "cosim/whole.h"
@@ -95,5 +94,3 @@ void bough_air_mean_negate(bough_air_mean *mean);
 // Rows of the air's states of the group's blades (n × n_per_blade).
 void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
                             int *row);
-
-#endif

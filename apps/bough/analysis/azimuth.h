@@ -2,8 +2,7 @@
 // and tower make the loads of a blade change with its azimuth, the linear system, seen by an observer at
 // rest, repeats with an nth of a turn. Modes are those of its mean over some azimuths of that, each about its
 // own equilibrium.
-#ifndef BOUGH_APPS_ANALYSIS_AZIMUTH_H
-#define BOUGH_APPS_ANALYSIS_AZIMUTH_H
+#pragma once
 
 #include "apps/bough/analysis/aeroelastic.h"
 #include "apps/bough/analysis/vibration.h"
@@ -47,5 +46,3 @@ bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double
 // (azimuths × n) [1/s]; NaN without a left vector.
 bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic, int n,
                                    const bough_mode_vectors *vector, double complex *change);
-
-#endif

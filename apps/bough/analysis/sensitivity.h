@@ -1,8 +1,7 @@
 // Sensitivity of a mode of the whole scene to its parameters, theory (108), by its left and right
 // eigenvectors: a parameter takes two equilibria and four products, and no search for eigenvalues. The
 // equilibrium changes with the parameter.
-#ifndef BOUGH_APPS_ANALYSIS_SENSITIVITY_H
-#define BOUGH_APPS_ANALYSIS_SENSITIVITY_H
+#pragma once
 
 #include "apps/bough/analysis/vibration.h"
 
@@ -40,5 +39,3 @@ const bough_parameter *bough_parameters_of(bough_arena *arena, const bough_scene
 // The scene with a parameter changed by `times` its change.
 bough_scene *bough_parameter_change(bough_arena *arena, const bough_scene *scene, const bough_parameter *x,
                                     double times);
-
-#endif

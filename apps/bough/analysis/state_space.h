@@ -3,8 +3,7 @@
 // y the states of all members as they are, and of the air where it follows in time (air_tangent.h), u what
 // acts on the scene from outside, o the channels that follow from the states. All by central differences of
 // the program's own equations. A turning rotor keeps its azimuth.
-#ifndef BOUGH_APPS_ANALYSIS_STATE_SPACE_H
-#define BOUGH_APPS_ANALYSIS_STATE_SPACE_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -27,5 +26,3 @@ typedef struct bough_state_space {
 // wind by a formula where the air follows (modes.air). A change of pitch is a turn at rest.
 bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, double time,
                                     bough_state_space *space);
-
-#endif

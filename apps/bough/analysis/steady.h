@@ -1,7 +1,6 @@
 // Rods in equilibrium: one by one with a clamped root, at rest or in steady rotation, for statics and
 // eigenvalues; or in the equilibrium of the whole scene (equilibrium.h).
-#ifndef BOUGH_APPS_ANALYSIS_STEADY_H
-#define BOUGH_APPS_ANALYSIS_STEADY_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 #include "flexbody/rod/rod_static.h"
@@ -41,5 +40,3 @@ bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation
 
 // Displacement [m] and rotation vector [rad] of vertex i from the undeformed rod, in body axes.
 void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift, bough_vec3 *turn);
-
-#endif

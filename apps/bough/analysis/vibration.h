@@ -5,8 +5,7 @@
 // frequencies are those an observer at rest sees: the multi-blade transform of cosim/analysis/modes.h, about
 // the mean of the blades' shapes. In any other rotation they are those of the present azimuth, which is
 // refused where the linear system changes with it: its motions are then no modes.
-#ifndef BOUGH_APPS_ANALYSIS_VIBRATION_H
-#define BOUGH_APPS_ANALYSIS_VIBRATION_H
+#pragma once
 
 #include "apps/bough/model/blade_group.h"
 #include "apps/bough/model/equilibrium.h"
@@ -108,5 +107,3 @@ bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int c
 // twice (coarser.h); *compared: false, and nothing is set, where no body has segments.
 bough_status bough_vibration_compare(bough_arena *arena, const bough_simulation *s,
                                      bough_vibration *vibration, bool *compared);
-
-#endif

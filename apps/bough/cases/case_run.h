@@ -1,7 +1,6 @@
 // The run of one case: sampled channels or their statistics, times, and its own estimates of its errors;
 // differences between runs at their common output times.
-#ifndef BOUGH_APPS_CASES_CASE_RUN_H
-#define BOUGH_APPS_CASES_CASE_RUN_H
+#pragma once
 
 #include "apps/bough/cases/counts.h"
 #include "apps/bough/cases/study.h"
@@ -100,5 +99,3 @@ typedef struct bough_study_drive {
 // BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY or BOUGH_IO. result->error is left to the caller.
 bough_status bough_case_run(const bough_study *study, const bough_case *c, int repeat,
                             bough_study_drive *drive, bough_study_series *series, bough_case_result *result);
-
-#endif

@@ -1,7 +1,6 @@
 // Statistics of the loads of a run, sample by sample in memory of constant size: moments, load cycles, time
 // at levels, and the extremes of every channel with the simultaneous values of all others.
-#ifndef BOUGH_APPS_CASES_COUNTS_H
-#define BOUGH_APPS_CASES_COUNTS_H
+#pragma once
 
 #include "apps/bough/results/recorder.h"
 
@@ -100,5 +99,3 @@ void bough_counts_add(bough_counts *counts, double t, const double *value);
 
 // Counts the ranges that are still open.
 void bough_counts_finish(bough_counts *counts);
-
-#endif

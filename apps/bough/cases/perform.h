@@ -1,6 +1,5 @@
 // Performs a study of any kind: its runs, tables and diagrams.
-#ifndef BOUGH_APPS_CASES_PERFORM_H
-#define BOUGH_APPS_CASES_PERFORM_H
+#pragma once
 
 #include "apps/bough/cases/case_run.h"
 
@@ -159,5 +158,3 @@ void bough_csv_next(FILE *file, const char *text);
 
 // A case that failed, with the command that runs it alone.
 void bough_case_failed(const bough_study *study, int number, const char *message, FILE *file);
-
-#endif

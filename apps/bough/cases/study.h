@@ -4,8 +4,7 @@
 //
 // All memory belongs to the arena given to bough_study_read. Every struct begins with its place in
 // the text.
-#ifndef BOUGH_APPS_CASES_STUDY_H
-#define BOUGH_APPS_CASES_STUDY_H
+#pragma once
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/config/text.h"
@@ -210,5 +209,3 @@ void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *er
 
 // Reads every case's scene, looks up the channels and takes the fingerprints.
 bough_status bough_study_check(bough_arena *arena, bough_study *study, bough_errors *errors);
-
-#endif

@@ -4,8 +4,7 @@
 // The search is guided, without a grid. The first settings follow from the error. The separate errors of
 // mesh, air and time of a run (apps/bough/model/error_verdict.h) then show by how much each can be coarser or
 // must be finer; at last each setting alone, and the other scheme, are varied about the best.
-#ifndef BOUGH_APPS_CASES_TUNE_H
-#define BOUGH_APPS_CASES_TUNE_H
+#pragma once
 
 #include "apps/bough/scene/scene.h"
 
@@ -79,5 +78,3 @@ void bough_tune_print(const bough_tune_state *t, int k, FILE *stream);
 void bough_tune_print_settings(const void *state, FILE *stream); // bough_tune_state
 
 bough_status bough_tune_write(bough_tune_state *t);
-
-#endif

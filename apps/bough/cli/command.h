@@ -1,7 +1,6 @@
 // A command of the program: its operands, its options as rows of a table, and its function. Each has a file
 // of its own; main.c lists them. The commands share the reading and building of scenes, and the signals.
-#ifndef BOUGH_APPS_CLI_COMMAND_H
-#define BOUGH_APPS_CLI_COMMAND_H
+#pragma once
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/model/simulation.h"
@@ -142,5 +141,3 @@ const char *bough_out_folder(bough_arena *arena, const bough_options *options);
 void bough_stop_listen(void);
 
 bool bough_stop_requested(void);
-
-#endif

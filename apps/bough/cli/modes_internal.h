@@ -1,6 +1,5 @@
 // What the files of `bough modes` share.
-#ifndef BOUGH_APPS_CLI_MODES_INTERNAL_H
-#define BOUGH_APPS_CLI_MODES_INTERNAL_H
+#pragma once
 
 #include "apps/bough/analysis/sensitivity.h"
 #include "apps/bough/analysis/vibration.h"
@@ -33,5 +32,3 @@ const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode 
 // Frequency, damped frequency, damping ratio and logarithmic decrement, of a row of the table and of a file.
 void bough_modes_print_value(double frequency, double damped_frequency, double damping);
 void bough_modes_write_value(FILE *file, double frequency, double damped_frequency, double damping);
-
-#endif

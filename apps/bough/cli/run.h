@@ -1,6 +1,5 @@
 // bough run: a run on the command line, with its files, checkpoints and report.
-#ifndef BOUGH_APPS_CLI_RUN_H
-#define BOUGH_APPS_CLI_RUN_H
+#pragma once
 
 #include "apps/bough/cli/command.h"
 #include "apps/bough/model/error_verdict.h"
@@ -80,5 +79,3 @@ double bough_forecast_derivative(const bough_coupling *c, int member, int tries,
 
 // Writes "results: 101 rows of 6 columns, 0.012 MB".
 void bough_forecast_print(bough_forecast forecast, const bough_channels *channels);
-
-#endif

@@ -4,8 +4,7 @@
 //   - a list of mappings with names changes the items of those names and appends others; a mapping in place
 //     of the list has these names as keys, and null removes an item;
 //   - any other value replaces the base's.
-#ifndef BOUGH_APPS_CONFIG_BASE_H
-#define BOUGH_APPS_CONFIG_BASE_H
+#pragma once
 
 #include "apps/bough/config/schema.h"
 
@@ -44,5 +43,3 @@ const char *bough_directory_of(bough_arena *arena, const char *path);
 // what is written for a scalar.
 void bough_node_write(const bough_node *node, const char *(*text)(void *self, const bough_node *scalar),
                       void *self, FILE *stream);
-
-#endif

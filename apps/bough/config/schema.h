@@ -2,8 +2,7 @@
 // defaults, the errors and the help text.
 //
 // A struct that a schema fills begins with `const bough_node *node`, its place in the text.
-#ifndef BOUGH_APPS_CONFIG_SCHEMA_H
-#define BOUGH_APPS_CONFIG_SCHEMA_H
+#pragma once
 
 #include "apps/bough/config/text.h"
 
@@ -230,5 +229,3 @@ bool bough_word_is_among(const char *word, const char *list, char separator);
 const bough_key *bough_schema_find(const bough_schema *schema, const char *name);
 
 static inline void *bough_field_at(void *item, size_t offset) { return (char *)item + offset; }
-
-#endif

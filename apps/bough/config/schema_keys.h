@@ -1,6 +1,5 @@
 // Words for tables of keys. A table defines FILLS before its rows, the struct whose members they fill.
-#ifndef BOUGH_APPS_CONFIG_SCHEMA_KEYS_H
-#define BOUGH_APPS_CONFIG_SCHEMA_KEYS_H
+#pragma once
 
 #include "apps/bough/config/schema.h"
 
@@ -23,5 +22,3 @@
     .size = sizeof(FILLS), .n_key = COUNT(((const bough_key[]){__VA_ARGS__})), .key = (const bough_key[]) {  \
         __VA_ARGS__                                                                                          \
     }
-
-#endif

@@ -3,8 +3,7 @@
 // Refused, with a position: files above 16 MB, nesting deeper than 64, more than a million values
 // (aliases counted as often as they expand), duplicate keys, keys that are not plain text, tags,
 // a second document, anything that is not UTF-8.
-#ifndef BOUGH_APPS_CONFIG_TEXT_H
-#define BOUGH_APPS_CONFIG_TEXT_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -73,5 +72,3 @@ bough_node *bough_node_find(const bough_node *node, const char *key);
 // The value at "output.frames" below a mapping, NULL where a key of it is left out. *last: the last value
 // found on the way there, the mapping itself at least.
 const bough_node *bough_node_below(const bough_node *node, const char *path, const bough_node **last);
-
-#endif

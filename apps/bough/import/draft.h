@@ -1,7 +1,6 @@
 // The texts of an imported scene's files and of its list. They become files only when the whole model could
 // be read.
-#ifndef BOUGH_APPS_IMPORT_DRAFT_H
-#define BOUGH_APPS_IMPORT_DRAFT_H
+#pragma once
 
 #include "aero/wind/wind_box.h"
 #include "apps/bough/import/import.h"
@@ -108,5 +107,3 @@ void bough_import_path(FILE *file, const char *path);
 // sampling alone do.
 bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound,
                                 bool *by_air);
-
-#endif

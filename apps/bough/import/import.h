@@ -1,6 +1,5 @@
 // Models of other programs as scenes.
-#ifndef BOUGH_APPS_IMPORT_IMPORT_H
-#define BOUGH_APPS_IMPORT_IMPORT_H
+#pragma once
 
 #include "core/base/status.h"
 
@@ -26,5 +25,3 @@ bough_status bough_import_openfast(const char *path, const char *folder, const b
 // BOUGH_INVALID says file:line:col.
 bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
                                  FILE *echo);
-
-#endif

@@ -1,7 +1,6 @@
 // What the readers of OpenFAST's modules share. Each reads the decks of its module and writes its
 // part of the scene and of the list.
-#ifndef BOUGH_APPS_IMPORT_OPENFAST_H
-#define BOUGH_APPS_IMPORT_OPENFAST_H
+#pragma once
 
 #include "apps/bough/import/draft.h"
 #include "apps/bough/import/import.h"
@@ -153,5 +152,3 @@ void bough_openfast_control(bough_openfast *o);
 // The generator's inertia on the slow shaft [kg m2]; whether it turns against the hub.
 double bough_openfast_generator_inertia(const bough_openfast *o);
 bool bough_openfast_shaft_twists(const bough_openfast *o);
-
-#endif

@@ -1,6 +1,5 @@
 // Writes sections of slender bodies as rows of a scene's table of structure.
-#ifndef BOUGH_APPS_IMPORT_SECTION_H
-#define BOUGH_APPS_IMPORT_SECTION_H
+#pragma once
 
 #include "apps/bough/import/draft.h"
 
@@ -73,5 +72,3 @@ typedef struct bough_wall {
 // nodes. BOUGH_INVALID: a wall has no thickness or no length.
 bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y, int n_wall,
                                 const bough_wall *wall, double stiffness[36], double mass[36]);
-
-#endif

@@ -1,7 +1,6 @@
 // Wind of other programs as a box: files in the style of Bladed (.wnd with its .sum), and the three files of
 // HAWC's Mann generator; and how an imported scene names them.
-#ifndef BOUGH_APPS_IMPORT_WIND_H
-#define BOUGH_APPS_IMPORT_WIND_H
+#pragma once
 
 #include "aero/wind/wind_box.h"
 #include "apps/bough/import/draft.h"
@@ -52,5 +51,3 @@ bough_status bough_wind_given(bough_draft *d, bough_wind_form form, const char *
 
 // The same for a box that was converted from other files; `path` is the first of them.
 void bough_wind_made(bough_draft *d, const bough_wind_box *box, const char *path);
-
-#endif

@@ -1,8 +1,7 @@
 // What the readers of a WindIO turbine share. Each reads a part of the file, in the layout of
 // version 1 (outer_shape_bem, angles in radians) or 2 (outer_shape, degrees), and writes its part
 // of the scene and of the list.
-#ifndef BOUGH_APPS_IMPORT_WINDIO_H
-#define BOUGH_APPS_IMPORT_WINDIO_H
+#pragma once
 
 #include "apps/bough/config/text.h"
 #include "apps/bough/import/draft.h"
@@ -158,5 +157,3 @@ typedef struct bough_windio_matrices {
 bool bough_windio_has_layers(const bough_windio *w);
 
 void bough_windio_layup(bough_windio *w, bough_windio_matrices *stiffness, bough_windio_matrices *mass);
-
-#endif

@@ -1,7 +1,6 @@
 // Connects the rotor's aerodynamics with the bodies of a simulation: takes the motion of the blades' vertices
 // and sets the loads on them, sampled at the scene's rate.
-#ifndef BOUGH_APPS_MODEL_AERO_LINK_H
-#define BOUGH_APPS_MODEL_AERO_LINK_H
+#pragma once
 
 #include "aero/rotor/rotor.h"
 #include "apps/bough/model/simulation.h"
@@ -138,5 +137,3 @@ void bough_drag_link_build(bough_arena *arena, bough_simulation *simulation);
 
 // Sets the drag at the present motion, constant, as bough_aero_link_hold sets the rotor's loads.
 void bough_drag_link_hold(bough_drag_link *link, double t);
-
-#endif

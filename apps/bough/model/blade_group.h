@@ -1,6 +1,5 @@
 // A turbine's blades as equal parts of its rotor, for the multi-blade transform.
-#ifndef BOUGH_APPS_MODEL_BLADE_GROUP_H
-#define BOUGH_APPS_MODEL_BLADE_GROUP_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -22,5 +21,3 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
 // inputs are `input` (n_input); mean (n_row) is work.
 void bough_blade_group_average(const bough_blade_group *group, const double *input, double *mean,
                                double *state);
-
-#endif

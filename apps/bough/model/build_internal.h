@@ -1,6 +1,5 @@
 // What the files that build a simulation share among themselves.
-#ifndef BOUGH_APPS_MODEL_BUILD_INTERNAL_H
-#define BOUGH_APPS_MODEL_BUILD_INTERNAL_H
+#pragma once
 
 #include "apps/bough/model/equilibrium.h"
 #include "apps/bough/model/simulation.h"
@@ -108,5 +107,3 @@ void bough_observe_shaft(bough_simulation *s, bough_channels *list);
 
 // The wrench of the nacelle on the tower's top.
 void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
-
-#endif

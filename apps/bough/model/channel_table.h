@@ -1,7 +1,6 @@
 // The table of all channels: name, unit, meaning, and OpenFAST's name. The channels of a run and the
 // documentation follow from it.
-#ifndef BOUGH_APPS_MODEL_CHANNEL_TABLE_H
-#define BOUGH_APPS_MODEL_CHANNEL_TABLE_H
+#pragma once
 
 #include "apps/bough/results/channels.h"
 
@@ -70,5 +69,3 @@ void bough_channel_group_add(bough_channels *list, bough_channel_sample *sample,
 // Writes all of them as Markdown, after the text of channel_help.md.
 extern const unsigned char bough_channel_help_text[];
 void bough_channel_table_help(FILE *stream);
-
-#endif

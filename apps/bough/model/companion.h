@@ -5,8 +5,7 @@
 //
 // If the error falls with order p, a solution with twice the step errs by 2ᵖ times as much, and the run by
 // 1/(2ᵖ − 1) of the difference: a third for order 2 (docs/theory.md).
-#ifndef BOUGH_APPS_MODEL_COMPANION_H
-#define BOUGH_APPS_MODEL_COMPANION_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -232,5 +231,3 @@ void bough_companion_stop_by(bough_companion *c, bool (*stop)(void));
 
 // What the companion remembers, when it can be stored.
 void bough_companion_snapshot(bough_companion *c, bough_snapshot *snapshot);
-
-#endif

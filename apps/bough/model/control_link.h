@@ -1,8 +1,7 @@
 // Connects a controller with the turbine of a simulation: it measures rotor speed and pitch and sets
 // generator torque and pitch, sampled at the scene's rate. Between samples the torque changes linearly to the
 // demand and the pitch joints by cubics without a jump in speed: both reach the demand one sample late.
-#ifndef BOUGH_APPS_MODEL_CONTROL_LINK_H
-#define BOUGH_APPS_MODEL_CONTROL_LINK_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -30,5 +29,3 @@ typedef struct bough_generator {
     double speed, torque, power; // [rad/s], on the fast shaft [N m], electrical [W]
 } bough_generator;
 bough_generator bough_control_link_generator(const bough_control_link *link);
-
-#endif

@@ -4,8 +4,7 @@
 // A joint of prescribed motion has its position at that time; one with an initial speed keeps coordinate and
 // speed. The bodies on them rotate steadily at their present azimuth, and gravity keeps its direction in the
 // rotating frame (frozen azimuth). All other joints come to rest.
-#ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_H
-#define BOUGH_APPS_MODEL_EQUILIBRIUM_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 #include "cosim/analysis/path.h"
@@ -82,5 +81,3 @@ void bough_simulation_take_shape(const bough_simulation *from, bough_simulation 
 
 // Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
 void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state);
-
-#endif

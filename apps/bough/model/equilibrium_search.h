@@ -1,7 +1,6 @@
 // The common part of searches for an equilibrium, for growth from it and of paths of equilibria: the system
 // of all members at rest at a time, finite changes of its states, and one search.
-#ifndef BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
-#define BOUGH_APPS_MODEL_EQUILIBRIUM_SEARCH_H
+#pragma once
 
 #include "apps/bough/model/equilibrium.h"
 #include "cosim/analysis/equilibrium.h"
@@ -61,5 +60,3 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
 bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
                                              const bough_assembly *assembly, double time,
                                              bough_equilibrium_work *work);
-
-#endif

@@ -1,7 +1,6 @@
 // The verdict on the errors that a companion measures: ranges of channels, errors that count, the largest of
 // them.
-#ifndef BOUGH_APPS_MODEL_ERROR_VERDICT_H
-#define BOUGH_APPS_MODEL_ERROR_VERDICT_H
+#pragma once
 
 #include "apps/bough/model/companion.h"
 
@@ -88,5 +87,3 @@ enum { BOUGH_ERROR_WARNING = 600 };
 // known any more, or "". `shares`, zero or found before, are found where the error is above the bound.
 bough_status bough_error_judge(bough_arena *arena, bough_companion *c, bool (*stop)(void), double bound,
                                bough_error_shares *shares, char warning[BOUGH_ERROR_WARNING]);
-
-#endif

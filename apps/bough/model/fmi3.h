@@ -1,7 +1,6 @@
 // The functions of the Functional Mock-up Interface 3.0, declared from its text
 // (https://fmi-standard.org): those of co-simulation.
-#ifndef BOUGH_APPS_MODEL_FMI3_H
-#define BOUGH_APPS_MODEL_FMI3_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -59,5 +58,3 @@ FMI3_API fmi3_get_state fmi3GetFMUState, fmi3FreeFMUState;
 FMI3_API fmi3_set_state fmi3SetFMUState;
 FMI3_API fmi3_count_dependencies fmi3GetNumberOfVariableDependencies;
 FMI3_API fmi3_do_step fmi3DoStep;
-
-#endif

@@ -1,6 +1,5 @@
 // An instance of an FMU of FMI 3.0 for co-simulation: its library, its values and its communication steps.
-#ifndef BOUGH_APPS_MODEL_FMU_INSTANCE_H
-#define BOUGH_APPS_MODEL_FMU_INSTANCE_H
+#pragma once
 
 #include "apps/bough/model/fmi3.h"
 #include "apps/bough/scene/scene.h"
@@ -46,5 +45,3 @@ bough_status bough_fmu_get(bough_fmu_instance *x, double t, const bough_fmu_valu
 bough_status bough_fmu_step(bough_fmu_instance *x, double t, double h);
 
 bool bough_fmu_is_good(fmi3_status status);
-
-#endif

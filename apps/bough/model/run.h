@@ -1,7 +1,6 @@
 // One run of a scene: its model, its channels, its steps, the recording of results, and the copy from which
 // it can continue. The command line, the library and the studies use this run.
-#ifndef BOUGH_APPS_MODEL_RUN_H
-#define BOUGH_APPS_MODEL_RUN_H
+#pragma once
 
 #include "apps/bough/model/companion.h"
 #include "apps/bough/results/progress.h"
@@ -80,5 +79,3 @@ void bough_run_snapshot(bough_run *run, bough_snapshot *snapshot);
 
 // Whether the scene can be stored at all, and whether it can be stored now: BOUGH_INVALID gives the reason.
 bough_status bough_run_storable(const bough_run *run);
-
-#endif

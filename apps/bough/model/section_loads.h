@@ -1,6 +1,5 @@
 // Forces and moments in the sections of a rod, between its vertices too.
-#ifndef BOUGH_APPS_MODEL_SECTION_LOADS_H
-#define BOUGH_APPS_MODEL_SECTION_LOADS_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -41,5 +40,3 @@ void bough_section_loads_linear(const bough_section_loads *x, int segment, bough
 // Position of a vertex [m] and rotation of the section there, in the body's frame.
 bough_vec3 bough_section_loads_position(const bough_section_loads *x, int vertex);
 bough_quaternion bough_section_loads_rotation(const bough_section_loads *x, int vertex);
-
-#endif

@@ -1,7 +1,6 @@
 // The shape of a simulation as polylines in ground axes: the axis of each rod; for a rigid body the line from
 // its parent over its origin to its mass centre.
-#ifndef BOUGH_APPS_MODEL_SHAPE_H
-#define BOUGH_APPS_MODEL_SHAPE_H
+#pragma once
 
 #include "apps/bough/model/section_loads.h"
 #include "apps/bough/results/frames.h"
@@ -22,5 +21,3 @@ void bough_shape_points(void *self, double *point);
 // Section loads at these points (Σ n_point × 3) [N], [N m] in ground axes, at time t: what the outer part
 // of a rod does to the inner one; 0 for bodies of other fidelities. `self`: the shape.
 void bough_shape_loads(void *self, double t, double *force, double *moment);
-
-#endif

@@ -1,6 +1,5 @@
 // A simulation of a scene, with tree, rods, aerodynamics and coupling, and queries to it.
-#ifndef BOUGH_APPS_MODEL_SIMULATION_H
-#define BOUGH_APPS_MODEL_SIMULATION_H
+#pragma once
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/scene/scene.h"
@@ -182,5 +181,3 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
 // meshes of `beside` for equal rods; NULL, or a simulation that outlives it.
 bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
                                        const bough_simulation *beside, bough_simulation **simulation);
-
-#endif

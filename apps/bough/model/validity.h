@@ -1,6 +1,5 @@
 // Limits of the models' validity: a run reports each limit once, when it first exceeds it.
-#ifndef BOUGH_APPS_MODEL_VALIDITY_H
-#define BOUGH_APPS_MODEL_VALIDITY_H
+#pragma once
 
 #include "apps/bough/model/simulation.h"
 
@@ -67,5 +66,3 @@ void bough_validity_list(const bough_simulation *s, char *text, size_t size);
 
 // Writes a line for each limit that is passed.
 void bough_validity_print(const bough_simulation *s, FILE *stream);
-
-#endif

@@ -1,7 +1,6 @@
 // Names and units of what a run records, in groups: whoever computes values registers one group
 // and its channels, and is asked for all of them at once. Building allocates, sampling does not.
-#ifndef BOUGH_APPS_RESULTS_CHANNELS_H
-#define BOUGH_APPS_RESULTS_CHANNELS_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -88,5 +87,3 @@ void bough_channels_know(const bough_channels *list, const double *value);
 
 // Evaluates every group unless the values are known: value (count).
 void bough_channels_sample(const bough_channels *list, double t, double *value);
-
-#endif

@@ -1,7 +1,6 @@
 // The folder that receives a run's results, and files in it that are complete or absent: they are
 // written under another name and renamed at the end.
-#ifndef BOUGH_APPS_RESULTS_FOLDER_H
-#define BOUGH_APPS_RESULTS_FOLDER_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -68,5 +67,3 @@ bough_status bough_growing_finish(bough_growing *growing);
 // Locks an existing folder until the arena is destroyed or the process ends, in whatever way. A folder
 // that another process holds is refused with that process's number.
 bough_status bough_lock_folder(bough_arena *arena, const char *folder);
-
-#endif

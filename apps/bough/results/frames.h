@@ -1,7 +1,6 @@
 // Shapes over time for ParaView: frames/NNNNNN.vtp, one file of polylines for each frame (VTK XML
 // PolyData, ASCII), and frames.pvd, which gives them their times and appears when the run ends.
-#ifndef BOUGH_APPS_RESULTS_FRAMES_H
-#define BOUGH_APPS_RESULTS_FRAMES_H
+#pragma once
 
 #include "apps/bough/results/folder.h"
 
@@ -38,5 +37,3 @@ bough_status bough_frames_finish(bough_frames *frames);
 
 // Removes all frames of an earlier run from its folder, and their list.
 bough_status bough_frames_remove(const char *folder);
-
-#endif

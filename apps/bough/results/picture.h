@@ -1,6 +1,5 @@
 // Pictures in SVG that are legible on light and on dark pages: texts, and charts of panels with two axes.
-#ifndef BOUGH_APPS_RESULTS_PICTURE_H
-#define BOUGH_APPS_RESULTS_PICTURE_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -64,5 +63,3 @@ void bough_chart_add(bough_chart *chart, bough_chart_point point);
 
 // Writes the picture; `chart`: a bough_chart.
 void bough_chart_write(const void *chart, FILE *svg);
-
-#endif

@@ -1,6 +1,5 @@
 // One line on a terminal: how far a run is, how fast, and how long it still takes.
-#ifndef BOUGH_APPS_RESULTS_PROGRESS_H
-#define BOUGH_APPS_RESULTS_PROGRESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,5 +28,3 @@ double bough_cpu_clock(bool thread);
 
 // Monotonic wall clock [s], from an arbitrary origin.
 double bough_wall_clock(void);
-
-#endif

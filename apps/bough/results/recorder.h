@@ -4,8 +4,7 @@
 //
 // The file is complete or says so: it grows as channels.out.partial with the word INCOMPLETE in its
 // third line, and receives its name when the run ends. A process that is killed leaves the partial.
-#ifndef BOUGH_APPS_RESULTS_RECORDER_H
-#define BOUGH_APPS_RESULTS_RECORDER_H
+#pragma once
 
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
@@ -113,5 +112,3 @@ typedef struct bough_binary_def {
 // Appears under its name when complete. BOUGH_IO when channels.out cannot be read or the file not
 // be written, BOUGH_INVALID for values that are not finite or beyond 1e30.
 bough_status bough_binary_write(const bough_binary_def *def);
-
-#endif

@@ -1,7 +1,6 @@
 // One page of a results folder: figures, curves, spectra, the moving shape, or a study's table and
 // picture. It carries its data and its program, and needs no network.
-#ifndef BOUGH_APPS_RESULTS_REPORT_H
-#define BOUGH_APPS_RESULTS_REPORT_H
+#pragma once
 
 #include "core/base/arena.h"
 
@@ -31,5 +30,3 @@ bough_status bough_report_shape(bough_arena *arena, const char *folder, double t
 
 // Opens folder/name; NULL when it does not exist.
 bough_status bough_report_open(const char *folder, const char *name, FILE **file);
-
-#endif

@@ -1,7 +1,6 @@
 // A small JSON writer for summary.json. The caller states the fields in order; the file appears
 // under its name only when it is complete.
-#ifndef BOUGH_APPS_RESULTS_SUMMARY_H
-#define BOUGH_APPS_RESULTS_SUMMARY_H
+#pragma once
 
 #include "apps/bough/results/folder.h"
 
@@ -29,5 +28,3 @@ void bough_summary_end(bough_summary *s);
 
 // Ends what is still open and gives the file its name, replacing an older one.
 bough_status bough_summary_close(bough_summary *s);
-
-#endif

@@ -8,8 +8,7 @@
 // Axes: ground z up. Section quantities are in the section's axes, whose z is the tangent of the reference
 // axis, and about the reference axis; strains in the order shear x, shear y, axial, bend about x, bend about
 // y, twist.
-#ifndef BOUGH_APPS_SCENE_SCENE_H
-#define BOUGH_APPS_SCENE_SCENE_H
+#pragma once
 
 #include "aero/control/controller.h"
 #include "aero/control/discon.h"
@@ -582,5 +581,3 @@ void bough_scene_help(FILE *stream);
 
 // Writes the same as JSON Schema.
 void bough_scene_json_schema(FILE *stream);
-
-#endif

@@ -1,6 +1,5 @@
 // The aerodynamics of a scene, as scene.h: wind, polars, blade elements, induction, tower.
-#ifndef BOUGH_APPS_SCENE_SCENE_AIR_H
-#define BOUGH_APPS_SCENE_SCENE_AIR_H
+#pragma once
 
 #include "aero/rotor/rotor.h"
 #include "apps/bough/config/text.h"
@@ -113,5 +112,3 @@ typedef struct bough_scene_aero {
     double *nodes;        // (n_node) numbers from 1
     bool pitching_moment;
 } bough_scene_aero;
-
-#endif

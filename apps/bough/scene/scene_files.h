@@ -1,6 +1,5 @@
 // The files that a scene is made of: what a copy of it needs and what its results depend on.
-#ifndef BOUGH_APPS_SCENE_SCENE_FILES_H
-#define BOUGH_APPS_SCENE_SCENE_FILES_H
+#pragma once
 
 #include "apps/bough/scene/scene.h"
 
@@ -38,5 +37,3 @@ void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *s
 
 // Adds the running program, on systems that give access to it.
 void bough_mix_program(uint64_t *hash);
-
-#endif

@@ -1,6 +1,5 @@
 // What the files that read a scene share among themselves.
-#ifndef BOUGH_APPS_SCENE_SCENE_INTERNAL_H
-#define BOUGH_APPS_SCENE_SCENE_INTERNAL_H
+#pragma once
 
 #include "apps/bough/config/schema.h"
 #include "apps/bough/config/schema_keys.h"
@@ -147,5 +146,3 @@ bool bough_fmu_scaled(const bough_fmu_description *d, const bough_fmu_variable *
      .example = "[0 s, 20 s]",                                                                     \
      .help = "grows linearly from zero at the first time to the full value at the second; two "    \
              "equal times above 0 make a jump"}
-
-#endif
