@@ -89,11 +89,11 @@ static double largest_of(const bough_companion *c, const double *error) {
 
 static const double hardly = 0.25, hardly_yet = 0.05; // of the mesh's error
 
-// Whether all parts but the mesh err by much less than it, and within the bound.
+// Whether all parts but the mesh err by much less than it, and within the bound, to the end of the run.
 static bool is_mostly_mesh(const bough_companion *c, const bough_error_shares *shares, double bound,
                            double much) {
     const bough_error_share *mesh = &shares->share[BOUGH_SHARE_MESH];
-    if (mesh->unknown[0]) return false;
+    if (mesh->unknown[0] || c->reason[0]) return false;
     return largest_of(c, mesh->others) <= fmin(bound, much * largest_of(c, mesh->largest));
 }
 
@@ -102,7 +102,7 @@ static bool is_mostly_mesh(const bough_companion *c, const bough_error_shares *s
 static bool is_by_mesh(const finding *x, double much) {
     const bough_companion *c = x->companion;
     const bough_scene_simulation *s = &c->run->scene->simulation;
-    if (s->error_shares || c->flutters || c->reason[0]) return false;
+    if (s->error_shares || c->flutters) return false;
     return is_mostly_mesh(c, x->shares, s->error_bound, much);
 }
 

@@ -117,9 +117,12 @@ TEST(a_run_that_errs_by_its_mesh_is_warned_of) {
     char warning[BOUGH_ERROR_WARNING];
     check_ok(bough_error_judge(arena, c, NULL, 0.02, &shares, warning));
     assert_non_null(strstr(warning, "cause: the mesh"));
-    others[0] = 0.06;
-    check_fails(bough_error_judge(arena, c, NULL, 0.02, &shares, warning), BOUGH_FAILED,
-                "the cause was not found: it failed");
+    for (int k = 0; k < 2; k++) {
+        others[0] = k ? 0.003 : 0.06;
+        if (k) strcpy(c->reason, "a companion that ended");
+        check_fails(bough_error_judge(arena, c, NULL, 0.02, &shares, warning), BOUGH_FAILED,
+                    "the cause was not found: it failed");
+    }
 }
 
 // A range of rounding is none to measure an error by.
