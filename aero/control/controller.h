@@ -4,8 +4,7 @@
 //
 // J. Jonkman, S. Butterfield, W. Musial, G. Scott, "Definition of a 5-MW Reference Wind Turbine for
 // Offshore System Development", NREL/TP-500-38060 (2009), section 7. All speeds are the generator's.
-#ifndef BOUGH_AERO_CONTROL_CONTROLLER_H
-#define BOUGH_AERO_CONTROL_CONTROLLER_H
+#pragma once
 
 #include "core/base/status.h"
 
@@ -54,5 +53,3 @@ double bough_controller_torque(const bough_controller_def *def, double speed, do
 // pitch are in the state.
 void bough_controller_advance(const bough_controller_def *def, double speed, double pitch, double step,
                               bough_controller_state *state);
-
-#endif

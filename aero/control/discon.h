@@ -6,8 +6,7 @@
 //
 // The library has its own memory: samples of a run cannot be repeated, and a process can use a library in
 // one run at a time only.
-#ifndef BOUGH_AERO_CONTROL_DISCON_H
-#define BOUGH_AERO_CONTROL_DISCON_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/status.h"
@@ -54,5 +53,3 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
 // that is not finite; warnings are not failures.
 bough_status bough_discon_call(bough_discon *discon, const bough_discon_sensed *sensed,
                                bough_discon_demand *demand);
-
-#endif

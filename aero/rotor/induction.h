@@ -9,8 +9,7 @@
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).
-#ifndef BOUGH_AERO_ROTOR_INDUCTION_H
-#define BOUGH_AERO_ROTOR_INDUCTION_H
+#pragma once
 
 #include "aero/rotor/polar.h"
 #include "core/base/level.h"
@@ -128,5 +127,3 @@ typedef struct bough_inflow_station {
 // the first sample is in equilibrium. `inflow`: normal and tangential [m/s].
 void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2], double *axial,
                          double *tangential, bough_inflow_station *station);
-
-#endif

@@ -2,8 +2,7 @@
 //     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
 // written for the quadrant of positive inflow, to which mirroring brings every other. Without
 // branches but those of the options, so that it runs in vector lanes; for induction_kernel.c only.
-#ifndef BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
-#define BOUGH_AERO_ROTOR_INDUCTION_BALANCE_H
+#pragma once
 
 #include "aero/rotor/induction.h"
 #include "core/base/lanes.h"
@@ -270,5 +269,3 @@ BOUGH_INLINE induction induction_of(weights o, flow w, balance b) {
     double safe = b.swirl == 0 ? 1 : b.swirl, swirl = b.swirl == 0 ? -1 : w.s * w.c / safe - 1;
     return (induction){lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5), o.swirl * lane_clamp(swirl, -1, 1)};
 }
-
-#endif

@@ -1,7 +1,6 @@
 // Airfoil coefficients: tables over the angle of attack, periodic over a full circle, interpolated
 // linearly or by monotone cubics.
-#ifndef BOUGH_AERO_ROTOR_POLAR_H
-#define BOUGH_AERO_ROTOR_POLAR_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/base.h"
@@ -98,5 +97,3 @@ BOUGH_INLINE bool bough_polar_outside_table(const bough_polar *polar, double alp
     double above = remainder(alpha - polar->low, 2 * BOUGH_PI);
     return (above < 0 ? above + 2 * BOUGH_PI : above) > polar->high - polar->low;
 }
-
-#endif

@@ -5,8 +5,7 @@
 // pitch), y edgewise (towards the trailing edge). The rotor rotates about +shaft (downwind), that
 // is clockwise seen from upwind. The rotor is sampled at one time; holding and ramping the loads
 // between samples is the caller's.
-#ifndef BOUGH_AERO_ROTOR_ROTOR_H
-#define BOUGH_AERO_ROTOR_ROTOR_H
+#pragma once
 
 #include "aero/rotor/induction.h"
 #include "aero/rotor/polar.h"
@@ -196,5 +195,3 @@ const bough_wind *bough_rotor_wind(const bough_rotor *rotor);
 
 // Changes the speed of a wind by a formula [m/s]; the next sample meets it.
 void bough_rotor_set_speed(bough_rotor *rotor, double speed);
-
-#endif

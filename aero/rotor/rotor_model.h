@@ -1,6 +1,5 @@
 // The built rotor, and the rows of a sample; for rotor*.c only.
-#ifndef BOUGH_AERO_ROTOR_ROTOR_MODEL_H
-#define BOUGH_AERO_ROTOR_ROTOR_MODEL_H
+#pragma once
 
 #include "aero/rotor/rotor.h"
 #include "core/base/lanes.h"
@@ -98,5 +97,3 @@ BOUGH_INLINE bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q,
                             wp * p.z + wq * q.z};
     return bough_rotation_matrix(bough_quaternion_unit(sum));
 }
-
-#endif

@@ -5,8 +5,7 @@
 // M. H. Hansen, M. Gaunaa, H. A. Madsen, "A Beddoes–Leishman type dynamic stall model in
 // state-space and indicial formulations", Risø-R-1354 (2004). The centre of pressure stays the
 // static one's. Beyond 40° from the flow the static polar takes over, wholly from 50°.
-#ifndef BOUGH_AERO_ROTOR_STALL_H
-#define BOUGH_AERO_ROTOR_STALL_H
+#pragma once
 
 #include "aero/rotor/polar.h"
 #include "core/base/level.h"
@@ -57,5 +56,3 @@ typedef struct bough_stall_results {
 void bough_stall_advance(const bough_stall_sections *sections, double step,
                          const bough_stall_results *results);
 BOUGH_DECLARE_LEVELS(bough_stall_advance);
-
-#endif

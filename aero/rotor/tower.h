@@ -5,8 +5,7 @@
 // dynamics", EWEC 2001: a source in the cylinder adds what the drag displaces.
 // S. R. J. Powles, Wind Engineering 7 (1983): a cosine-squared wake that widens with the root of
 // the distance. Both in the form of the reference code (AeroDyn v5).
-#ifndef BOUGH_AERO_ROTOR_TOWER_H
-#define BOUGH_AERO_ROTOR_TOWER_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/vec3.h"
@@ -56,5 +55,3 @@ double bough_tower_distance(const bough_tower *tower, bough_vec3 position);
 
 // The wind at a point with the tower's influence; `wind` is the undisturbed wind there [m/s].
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind);
-
-#endif

@@ -1,8 +1,7 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
 // table over time, in which the wind changes everywhere at once; or a wind file; or a condition of
 // IEC 61400-1. Any of them may be inclined and veer with the height.
-#ifndef BOUGH_AERO_WIND_WIND_H
-#define BOUGH_AERO_WIND_WIND_H
+#pragma once
 
 #include "aero/wind/wind_box.h"
 #include "aero/wind/wind_hub.h"
@@ -90,5 +89,3 @@ double bough_wind_row_time(const bough_wind *wind, int row);
 
 // The wind at a point in global axes (z up) and a time [s].
 bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t);
-
-#endif

@@ -6,8 +6,7 @@
 // height, height of the lowest point [m], slope and offset of u, v, w; int32 n and n characters;
 // int16 velocities, (value − offset)/slope in m/s: for every time u, v, w at every point of the
 // grid, breadth fastest, then at the tower points from below the grid downwards.
-#ifndef BOUGH_AERO_WIND_WIND_BOX_H
-#define BOUGH_AERO_WIND_WIND_BOX_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/status.h"
@@ -42,5 +41,3 @@ bool bough_wind_box_lasts(const bough_wind_box *box, double until);
 // repeats, else half a width downwind, as in InflowWind. Outside the grid the value of its edge;
 // below it that of the tower points, if there are any.
 bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, double t);
-
-#endif

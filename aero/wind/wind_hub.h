@@ -1,7 +1,6 @@
 // Wind from a hub-height file (`.wnd`): a table over time of speed, direction, shears, gust and upflow,
 // the same everywhere at one time.
-#ifndef BOUGH_AERO_WIND_WIND_HUB_H
-#define BOUGH_AERO_WIND_WIND_HUB_H
+#pragma once
 
 #include "core/base/arena.h"
 #include "core/base/status.h"
@@ -32,5 +31,3 @@ typedef struct bough_wind_hub {
 bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_wind_hub *hub);
 
 bough_vec3 bough_wind_hub_at(const bough_wind_hub *hub, bough_vec3 position, double t);
-
-#endif

@@ -3,8 +3,7 @@
 //
 // Axes: x downwind, y to the left, z up from the ground. A positive change of direction is one where
 // the wind comes from further clockwise, seen from above.
-#ifndef BOUGH_AERO_WIND_WIND_IEC_H
-#define BOUGH_AERO_WIND_WIND_IEC_H
+#pragma once
 
 #include "aero/wind/wind_box.h"
 #include "core/base/status.h"
@@ -107,5 +106,3 @@ bool bough_turbulence_equal(const bough_wind_iec_def *a, const bough_wind_iec_de
 
 // Makes the box, in which the mean wind by its profile is contained.
 bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def, bough_wind_box *box);
-
-#endif
