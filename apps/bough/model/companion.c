@@ -14,8 +14,8 @@
 
 static void take(bough_companion *c, bough_arena *arena) {
     size_t n = (size_t)c->channels->count + 1;
-    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->least, &c->low, &c->high, &c->other_low,
-                     &c->other_high, &c->noticed);
+    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->least, &c->grown, &c->low, &c->high,
+                     &c->other_low, &c->other_high, &c->noticed);
     for (size_t i = 0; i < n; i++) {
         c->low[i] = c->other_low[i] = HUGE_VAL;
         c->high[i] = c->other_high[i] = -HUGE_VAL;
@@ -213,12 +213,30 @@ static bool is_large(const bough_companion *c, int i, double error) {
            bough_error_counts(c, i) && c->rest == 0;
 }
 
+static const double most_growth = 4; // of an error since the finer solution ended
+
+// Errors that grew in the second half of what the finer solution followed, until it would have taken too much
+// work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays.
+static void extrapolate(bough_companion *c) {
+    const bough_finer *f = &c->finer;
+    double followed = f->left - f->from, t = c->run->master->time;
+    if (!(followed > 0) || c->run->aero) return;
+    double times = fmin((t - f->from) / followed, most_growth);
+    for (int i = 0; i < c->channels->count; i++) {
+        if (c->grown[i] < f->left - followed / 2 || !is_large(c, i, c->least[i])) continue;
+        c->error[i] = fmax(c->error[i], fmin(times * c->least[i], bough_error_range(c, i) / 2));
+    }
+}
+
 // Vibrations that are faster than the steps decay in run and companion and leave no difference, and those
 // that are faster than the samples of the air are aliased. The finer solution resolves them, and goes on
 // while a difference grows.
 static void compare_finer(bough_companion *c, double work) {
     bough_finer *f = &c->finer;
-    if (!bough_finer_advance(f, c->run, work)) return;
+    if (!bough_finer_advance(f, c->run, work)) {
+        extrapolate(c);
+        return;
+    }
     bool held = !bough_master_sampled(c->run->master), grows = false;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
@@ -227,6 +245,7 @@ static void compare_finer(bough_companion *c, double work) {
         if (!(error > c->least[i])) continue;
         grows = grows || is_large(c, i, error);
         c->least[i] = error;
+        c->grown[i] = c->run->master->time;
         if (c->error[i] < error) c->error[i] = error;
     }
     if (grows && !c->run->aero) bough_finer_go_on(f, c->run->master);
@@ -467,7 +486,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     int n = c->channels->count;
     bough_simulation_snapshot(c->coarser.simulation, s);
     bough_finer_snapshot(&c->finer, s);
-    double *const rows[] = {c->value, c->error,     c->least,      c->low,
+    double *const rows[] = {c->value, c->error,     c->least,      c->grown,  c->low,
                             c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     // a restored companion goes on from the stored work, whatever its own counters are

@@ -101,6 +101,7 @@ typedef struct bough_finer {
     bough_other_run other; // its simulation is NULL where the scene has none
     bool follows;          // it runs beside the run
     double from, until;    // from and up to these times [s]
+    double left;           // when it would have taken too much work to go on [s]; 0: it has not
     double ratio;          // error of the run over the difference
     double work;           // so far (bough_simulation_work)
     long run_steps;        // of the run's solvers so far
@@ -185,6 +186,7 @@ typedef struct bough_companion {
     double *before;                      // (channels->count) of the run at the comparison before
     double *error;                       // (channels->count) largest so far, in the channels' units
     double *least;                       // (channels->count) beside the finer solution
+    double *grown;                       // (channels->count) when that grew last [s]
     double *low, *high;                  // (channels->count) range of the run
     double *other_low, *other_high;      // (channels->count) of the companion
     double *noticed;                     // (channels->count) when the error first passed the accuracy [s]

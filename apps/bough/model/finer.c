@@ -7,9 +7,8 @@
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
 // Its largest work, relative to that of run and companion, extrapolated to the end; and some milliseconds
-// more, fewer in its first macro step.
-static const double most_work = 0.1;
-static const double little = 3e6, little_at_first = 1e6;
+// more.
+static const double most_work = 0.1, little = 1e6;
 
 // Steps in its first macro step that are never too much work.
 static const double least_steps = 250;
@@ -71,10 +70,10 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
-// The work that it may still take, a tenth of all and `more`; unlimited at time 0.
-static double work_left(const bough_finer *f, const bough_master *run, double work, double more) {
+// The work that it may still take; unlimited at time 0.
+static double work_left(const bough_finer *f, const bough_master *run, double work) {
     double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
-    return most_work * whole + more - f->work;
+    return most_work * whole + little - f->work;
 }
 
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
@@ -83,7 +82,7 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
     const bough_scene_solver *solver = &own->scene->simulation.master;
     int most = solver->most_steps;
     if (solver->solver != BOUGH_ROSENBROCK || own->master->time > f->from) return most;
-    double allowed = work_left(f, run, work, little_at_first) / bough_other_run_work_of_step(&f->other);
+    double allowed = work_left(f, run, work) / bough_other_run_work_of_step(&f->other);
     return (int)fmin(most, fmax(least_steps, allowed));
 }
 
@@ -91,8 +90,8 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    if (jump > m->time + reach || work_left(f, m, work, little) < 0 || !bough_master_sampled(m)) return;
-    if (!f->follows) join(f, run), f->from = m->time, f->run_steps = steps_of(run);
+    if (jump > m->time + reach || work_left(f, m, work) < 0 || !bough_master_sampled(m)) return;
+    if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = steps_of(run);
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
 }
@@ -110,8 +109,11 @@ static bool gave_up(const bough_status *status, int most, long steps, long by_ru
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     bough_status status = bough_ok();
-    bool ends = run->master->time > f->until || work_left(f, run->master, work, little) < 0;
-    if (!f->follows || ends) return f->follows = false;
+    if (!f->follows || run->master->time > f->until) return f->follows = false;
+    if (work_left(f, run->master, work) < 0) {
+        f->left = own->master->time;
+        return f->follows = false;
+    }
     long before = steps_of(own), by_run = steps_of(run) - f->run_steps;
     int most = most_steps(f, run->master, work);
     bough_other_run_limit(&f->other, most);
@@ -132,5 +134,6 @@ void bough_finer_snapshot(bough_finer *f, bough_snapshot *s) {
     bough_snapshot_take(s, &f->follows, sizeof f->follows);
     bough_snapshot_take(s, &f->from, sizeof f->from);
     bough_snapshot_take(s, &f->until, sizeof f->until);
+    bough_snapshot_take(s, &f->left, sizeof f->left);
     bough_snapshot_take(s, &f->work, sizeof f->work);
 }
