@@ -226,7 +226,7 @@ static const double loosest = 0.02; // tolerance
 // of which the run's error is a quarter. Integrators of a tight tolerance have a high order, and the end of
 // each macro step cuts one of their steps short.
 static looser looser_of(const bough_scene *scene) {
-    double beside_mesh = fmax(6, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
+    double beside_mesh = fmax(12, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
     if (some_finer(scene)) return (looser){beside_mesh, 2, 2};
     if (usual_ratio(scene) == 1) return (looser){3, 1.5, 2};
     return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4} : (looser){10, 2, 2};

@@ -17,7 +17,7 @@
 enum {
     BOUGH_COARSER_MESH = 1, // half the segments of each rod, or more where it has few
     BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
-    // Twice the macro step and the longest step, ten times the tolerance (six beside a finer mesh; 1.5 and
+    // Twice the macro step and the longest step, ten times the tolerance (twelve beside a finer mesh; 1.5 and
     // 3 times beside an explicit coupling; of rigid bodies four times the macro step, thirty times a
     // tight tolerance); all bodies as one system, without the error of a coupling.
     BOUGH_COARSER_TIME = 4,
