@@ -442,6 +442,7 @@ void bough_companion_compare(bough_companion *c) {
         return;
     }
     while (lags(c)) bough_companion_step(c, false);
+    if (bough_companion_stopped(c)) return;
     const bough_companion_row *row = find_present(c);
     // a failure counts from the end of the failed step, however many steps of the run were beside it
     if (!bough_is_ok(&c->status) &&
@@ -467,6 +468,10 @@ void bough_companion_stop_by(bough_companion *c, bool (*stop)(void)) {
     if (c->coarser.simulation) bough_master_stop_by(c->coarser.simulation->master, stop);
     const bough_simulation *finer = c->finer.other.simulation;
     if (finer) bough_master_stop_by(finer->master, stop);
+}
+
+bool bough_companion_stopped(const bough_companion *c) {
+    return c->status.code == BOUGH_INTERRUPTED || c->finer.status.code == BOUGH_INTERRUPTED;
 }
 
 double bough_companion_work(const bough_companion *c) {
@@ -511,7 +516,7 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     bough_snapshot_take(s, &c->record.taken, sizeof c->record.taken);
     bough_snapshot_doubles(s, c->record.row, c->record.row ? BOUGH_RECORD_MOST * c->record.width : 0);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
-    c->status = bough_ok();
+    c->status = c->finer.status = bough_ok();
     expect_jumps(c);
     c->n_row = c->present = 0;
     if (alive(c)) take_row(c);

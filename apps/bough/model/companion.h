@@ -106,8 +106,9 @@ typedef struct bough_finer {
     double work;           // so far (bough_simulation_work)
     long run_steps;        // of the run's solvers so far
     int n_jump;
-    double *jump; // (n_jump) of the jumps, in order [s]
-    char *loads;  // memory of the run's loads while they are copied
+    double *jump;        // (n_jump) of the jumps, in order [s]
+    char *loads;         // memory of the run's loads while they are copied
+    bough_status status; // of its last step
 } bough_finer;
 
 bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f);
@@ -228,8 +229,10 @@ bool bough_companion_knows(const bough_companion *c, int channel);
 // a copy needs.
 bool bough_companion_storable(const bough_companion *c);
 
-// Its steps end, as those of the run, once stop() is true; see bough_master_stop_by.
+// Its steps end, as those of the run, once stop() is true; see bough_master_stop_by. The run has to end, too
+// (bough_companion_stopped): what follows would have no errors.
 void bough_companion_stop_by(bough_companion *c, bool (*stop)(void));
+bool bough_companion_stopped(const bough_companion *c);
 
 // What the companion remembers, when it can be stored.
 void bough_companion_snapshot(bough_companion *c, bough_snapshot *snapshot);

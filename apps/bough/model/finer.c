@@ -108,7 +108,6 @@ static bool gave_up(const bough_status *status, int most, long steps, long by_ru
 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
-    bough_status status = bough_ok();
     if (!f->follows || run->master->time > f->until) return f->follows = false;
     if (work_left(f, run->master, work) < 0) {
         f->left = own->master->time;
@@ -119,11 +118,12 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     bough_other_run_limit(&f->other, most);
     f->run_steps += by_run;
     f->work -= bough_simulation_work(own);
-    while (bough_is_ok(&status) && own->master->time < run->master->time)
-        status = bough_other_run_step(&f->other, run);
+    f->status = bough_ok();
+    while (bough_is_ok(&f->status) && own->master->time < run->master->time)
+        f->status = bough_other_run_step(&f->other, run);
     f->work += bough_simulation_work(own);
-    if (gave_up(&status, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
-    f->follows = bough_is_ok(&status) && own->master->time == run->master->time;
+    if (gave_up(&f->status, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
+    f->follows = bough_is_ok(&f->status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;
 }

@@ -130,6 +130,11 @@ static void step_one(void *self, int which) {
     if (which == 1) bough_companion_step(run->companion, run->steps_together && !run->side_by_side);
 }
 
+static bough_status interrupted(const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
+}
+
 bough_status bough_run_step(bough_run *run) {
     bool due = bough_companion_due(run->companion);
     if (due && run->side_by_side) {
@@ -138,6 +143,8 @@ bough_status bough_run_step(bough_run *run) {
         for (int k = 0; k <= due; k++) step_one(run, k);
     }
     if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
+    if (bough_is_ok(&run->outcome) && bough_companion_stopped(run->companion))
+        run->outcome = interrupted(run);
     finish_step(run);
     return run->outcome;
 }
@@ -153,10 +160,7 @@ void bough_run_update_clock(bough_run *run) {
 }
 
 static bough_status step(bough_run *run) {
-    const bough_master *m = run->simulation->master;
-    if (run->stop && run->stop()) {
-        return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
-    }
+    if (run->stop && run->stop()) return interrupted(run);
     // several steps of the run beside one of the companion, so that no thread waits in between
     bool together = run->side_by_side && run->steps_together && bough_companion_due(run->companion);
     run->until = together ? bough_master_next(run->companion->coarser.simulation->master) : 0;

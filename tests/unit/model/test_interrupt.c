@@ -30,6 +30,20 @@ static void stop_within(const char *scheme, long left) {
     for (int i = 0; i < channels.count; i++) check_near(after[i], before[i], 1e-12, 1e-12);
 }
 
+// The request ends the run, too, if its companion or the finer solution notices first: what follows would
+// have no errors.
+TEST(a_request_to_the_companion_ends_the_run) {
+    for (long left = 0; left < 20; left += 6) {
+        check_run(arena, run, "tests/data/scenes/arms.yaml", sets_of("simulation.duration=200 ms"));
+        for (int k = 0; k < BEFORE; k++) check_ok(bough_run_step(&run));
+        while (!bough_companion_due(run.companion)) check_ok(bough_run_step(&run));
+        evaluations = left;
+        bough_companion_stop_by(run.companion, stop);
+        assert_int_equal(bough_run_step(&run).code, BOUGH_INTERRUPTED);
+        assert_string_equal(run.companion->reason, "");
+    }
+}
+
 TEST(a_macro_step_is_left_as_it_began) {
     static const char *const schemes[] = {
         "simulation.coupling.scheme=frozen", "simulation.coupling.scheme=ramp",
