@@ -213,7 +213,7 @@ static bool is_large(const bough_companion *c, int i, double error) {
            bough_error_counts(c, i) && c->rest == 0;
 }
 
-static const double most_growth = 4; // of an error since the finer solution ended
+static const double most_growth = 2; // of an error since the finer solution ended
 
 // Errors that grew in the second half of what the finer solution followed, until it would have taken too much
 // work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays.

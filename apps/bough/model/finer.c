@@ -7,8 +7,9 @@
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
 // Its largest work, relative to that of run and companion, extrapolated to the end; and some milliseconds
-// more.
-static const double most_work = 0.1, little = 1e6;
+// more, fewer in its first macro step.
+static const double most_work = 0.1;
+static const double little = 3e6, little_at_first = 1e6;
 
 // Steps in its first macro step that are never too much work.
 static const double least_steps = 250;
@@ -70,10 +71,10 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
-// The work that it may still take; unlimited at time 0.
-static double work_left(const bough_finer *f, const bough_master *run, double work) {
+// The work that it may still take, a tenth of all and `more`; unlimited at time 0.
+static double work_left(const bough_finer *f, const bough_master *run, double work, double more) {
     double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
-    return most_work * whole + little - f->work;
+    return most_work * whole + more - f->work;
 }
 
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
@@ -82,7 +83,7 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
     const bough_scene_solver *solver = &own->scene->simulation.master;
     int most = solver->most_steps;
     if (solver->solver != BOUGH_ROSENBROCK || own->master->time > f->from) return most;
-    double allowed = work_left(f, run, work) / bough_other_run_work_of_step(&f->other);
+    double allowed = work_left(f, run, work, little_at_first) / bough_other_run_work_of_step(&f->other);
     return (int)fmin(most, fmax(least_steps, allowed));
 }
 
@@ -90,7 +91,7 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    if (jump > m->time + reach || work_left(f, m, work) < 0 || !bough_master_sampled(m)) return;
+    if (jump > m->time + reach || work_left(f, m, work, little) < 0 || !bough_master_sampled(m)) return;
     if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = steps_of(run);
     f->follows = true;
     f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
@@ -109,7 +110,7 @@ static bool gave_up(const bough_status *status, int most, long steps, long by_ru
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     if (!f->follows || run->master->time > f->until) return f->follows = false;
-    if (work_left(f, run->master, work) < 0) {
+    if (work_left(f, run->master, work, little) < 0) {
         f->left = own->master->time;
         return f->follows = false;
     }
