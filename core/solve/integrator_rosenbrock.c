@@ -26,8 +26,8 @@ static const double too_old = 3;
 // these tangents and this part of the tolerance: a stiff body that rotates moves what carries it.
 static const double turned = 10, noticed = 0.03;
 // Not the tangents but the motion is the cause where the first step under new ones has more than this part of
-// the error that they were renewed for, both over the third power of the length.
-static const double innocent = 0.5;
+// the error for which they were renewed, both over the third power of the length.
+static const double by_motion = 0.5;
 static const double older = 1.1;     // growth of the useful age at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
@@ -41,12 +41,12 @@ typedef struct rosenbrock {
     double longest;             // the next step may have [s]
     double factored;            // γh of the factors; 0: none
     int kept;                   // most steps with the same tangents
-    double useful;     // useful age of tangents: less than `kept` after steps that failed by their age
-    double suspected;  // error over h³ for which tangents were renewed before that age [s⁻³]; 0: none
-    double trusted;    // their useful age before
-    double new_error;  // of the last step with new tangents, over h³ [s⁻³]
-    double least;      // error of the steps since the tangents were found
-    int age, most_age; // steps since the tangents were found, and after which they are renewed
+    double useful;        // useful age of tangents: less than `kept` after steps that failed by their age
+    double renewed_for;   // error over h³ for which tangents were renewed before that age [s⁻³]; 0: none
+    double useful_before; // the useful age until then
+    double new_error;     // of the last step with new tangents, over h³ [s⁻³]
+    double least;         // error of the steps since the tangents were found
+    int age, most_age;    // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     bough_rosenbrock_step now; // the step in progress
@@ -214,17 +214,17 @@ static void accept(rosenbrock *m, double *restrict y) {
 }
 
 // Tangents are renewed at this age from now on, because of the error of a step of length h.
-static void suspect(rosenbrock *m, double error, double h) {
-    m->suspected = error / (h * h * h);
-    m->trusted = m->useful;
+static void renew_earlier(rosenbrock *m, double error, double h) {
+    m->renewed_for = error / (h * h * h);
+    m->useful_before = m->useful;
     m->useful = m->age;
 }
 
 // The first step under new tangents shows whether the old ones were the cause.
-static void judge(rosenbrock *m, double error, double h) {
-    if (m->age > 0 || m->suspected == 0) return;
-    if (error > innocent * m->suspected * h * h * h) m->useful = m->trusted;
-    m->suspected = 0;
+static void check_renewal(rosenbrock *m, double error, double h) {
+    if (m->age > 0 || m->renewed_for == 0) return;
+    if (error > by_motion * m->renewed_for * h * h * h) m->useful = m->useful_before;
+    m->renewed_for = 0;
 }
 
 // After a failed step of length h: new tangents where the old ones are the cause, else a shorter step.
@@ -233,7 +233,7 @@ static void shorten(rosenbrock *m, double h, double error) {
     bool old = isfinite(error) && error > too_old * by_new;
     m->sum.failed_steps++;
     m->longest = h * fmax(0.1, fmin(1, 0.9 * cbrt(1 / (old ? by_new : error))));
-    if (old) suspect(m, error, h);
+    if (old) renew_earlier(m, error, h);
     if (old || m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
 }
 
@@ -250,7 +250,7 @@ static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
         }
         // a step that fails with old tangents is repeated with new ones
         double error = try_step(m, *t, h, y);
-        judge(m, error, h);
+        check_renewal(m, error, h);
         if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
             return "the error test fails down to the smallest step (a segment that turns by more than"
                    " 120°, or a value that overflows)";
@@ -265,7 +265,7 @@ static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
         m->least = m->age > 0 ? fmin(m->least, error) : error;
         m->age++;
         bool late = error > noticed && error > turned * m->least;
-        if (late && m->ode.elastic_rate > 0) suspect(m, error, h);
+        if (late && m->ode.elastic_rate > 0) renew_earlier(m, error, h);
         m->drifted++;
         // elementary controller of an error of order 3
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
@@ -284,7 +284,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
         m->age = MOST_AGE;
         m->most_age = UNDAMPED_AGE;
         m->useful = m->kept;
-        m->suspected = 0;
+        m->renewed_for = 0;
         m->longest = m->step;
     }
     m->drifted = MOST_DRIFTED;

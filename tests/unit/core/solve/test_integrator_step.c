@@ -253,7 +253,7 @@ static bool forced_factor(void *self, double gamma) {
 static void forced_solve(void *self, double *x) { *x /= *(double *)self; }
 
 // The error of a linear system's steps grows and falls with its force, by which its tangents are no older.
-TEST(tangents_are_not_blamed_for_the_motion) {
+TEST(tangents_are_kept_where_the_motion_changes_the_error) {
     static const double scale[1] = {1};
     double divisor, y[1] = {0};
     bough_arena *arena = check_memory();
