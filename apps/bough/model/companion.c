@@ -161,8 +161,8 @@ static const double least_ratio_of_force = 0.4;
 // that of the samples, and at half the sampling rate the error is no multiple of the run's.
 static const double most_missed = 0.1;
 static const double fluttering = 0.3; // with a larger error the air feeds the vibrations
-static const double far_more =
-    20; // than the run's: at half the rate errors of order 2 are four times as large
+// Times what the run's samples miss: at half the rate errors of order 2 are four times as large.
+static const double far_more = 20;
 
 // Whether vibrations grow in the companion alone.
 static bool flutters(double run, double companion) {
