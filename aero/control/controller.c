@@ -3,8 +3,6 @@
 
 #include "core/base/base.h"
 
-#include <math.h>
-
 static double synchronous(const bough_controller_def *d) { return d->rated_speed / (1 + d->slip); }
 
 // The slope of the line from zero torque at the synchronous speed to rated torque.

@@ -8,8 +8,6 @@
 
 #include "core/base/status.h"
 
-#include <stdbool.h>
-
 typedef enum bough_above_rated { BOUGH_CONSTANT_POWER, BOUGH_CONSTANT_TORQUE } bough_above_rated;
 
 typedef struct bough_controller_def {

@@ -5,9 +5,6 @@
 #include "core/base/input_file.h"
 
 #include <dlfcn.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 // Records of the interface, and more for the values that controllers log.
 enum { RECORDS = 8192, LOGGED = 1000, TEXT = 1024 };

@@ -3,8 +3,6 @@
 
 #include "core/base/base.h"
 
-#include <math.h>
-
 bough_induction_options bough_induction_options_default(void) {
     return (bough_induction_options){BOUGH_HIGH_THRUST_SMOOTH, true, true, true, true, true, false};
 }

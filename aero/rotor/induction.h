@@ -14,8 +14,6 @@
 #include "aero/rotor/polar.h"
 #include "core/base/level.h"
 
-#include <stdbool.h>
-
 // Thrust as a function of a where momentum theory is not valid.
 typedef enum bough_high_thrust {
     // From a = 0.35/cos χ, at most 0.5, a parabola, smooth there, to CT = 2 at a = 1 and beyond; the

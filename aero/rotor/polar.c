@@ -3,9 +3,6 @@
 
 #include "core/base/base.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 enum { ROW = BOUGH_POLAR_ROW };
 
 static const double circle = 2 * BOUGH_PI;

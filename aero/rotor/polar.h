@@ -5,8 +5,6 @@
 #include "core/base/arena.h"
 #include "core/base/base.h"
 
-#include <math.h>
-
 // Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
 // row and the first, 360° later, values are interpolated, too.
 typedef struct bough_polar_def {

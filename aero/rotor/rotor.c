@@ -2,9 +2,6 @@
 
 #include "aero/rotor/rotor_model.h"
 
-#include <math.h>
-#include <string.h>
-
 // All vectors of a blade are in its frame's axes, stations side by side in vector lanes; the
 // blade elements are those of rotor_approach_kernel.c.
 

@@ -1,8 +1,6 @@
 // Stations of a blade: position, wind, induction; the kinematics of theory (86).
 #include "aero/rotor/rotor_model.h"
 
-#include <string.h>
-
 // The blade elements follow the polar formulation of the reference code (AeroDyn v5): y is
 // tangential at the element's own place, x normal to the bent but unswept, unpitched, untwisted
 // blade, and momentum is balanced over the element's projection on the rotor plane. Lift and drag

@@ -5,7 +5,6 @@
 #include "core/base/rotation.h"
 
 #include <assert.h>
-#include <string.h>
 
 // Loads are piecewise linear between stations, the deformed reference axis piecewise linear
 // between vertices. With the vertices' hat functions as weights, force and moment of the line

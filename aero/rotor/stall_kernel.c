@@ -4,7 +4,6 @@
 #include "core/base/lanes.h"
 
 #include <assert.h>
-#include <string.h>
 
 enum { N = BOUGH_LANES };
 
@@ -117,7 +116,7 @@ static void take(const bough_stall_sections *s, int first, group *restrict g) {
     }
 }
 
-// What becomes of the states; those that start are in equilibrium, but for the separation.
+// Which states start, go on or stay. Those that start are in equilibrium; their separation follows later.
 static void begin(double step, group *restrict g) {
 #pragma omp simd
     for (int i = 0; i < N; i++) {

@@ -10,8 +10,6 @@
 #include "core/base/arena.h"
 #include "core/base/vec3.h"
 
-#include <stdbool.h>
-
 typedef enum bough_tower_influence {
     BOUGH_TOWER_POTENTIAL,
     BOUGH_TOWER_BAK,

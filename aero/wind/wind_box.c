@@ -6,10 +6,6 @@
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 enum { HEAD = 70, COUNTS = 4, FLOATS = 12, MOST_TEXT = 10000, PIECE = 4096 };
 
 static bough_status bad(const char *path, const char *what) {

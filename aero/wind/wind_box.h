@@ -12,9 +12,6 @@
 #include "core/base/status.h"
 #include "core/base/vec3.h"
 
-#include <stdint.h>
-#include <stdio.h>
-
 typedef struct bough_wind_box {
     bool periodic;
     int n_z, n_y, n_tower, n_time;

@@ -5,10 +5,6 @@
 #include "core/base/input_file.h"
 #include "core/base/schedule.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 enum { LINE = 1024, LEAST = 8, MOST = 9, MOST_ROWS = 1000000 };
 
 // The numbers of a line, at most MOST of them; −1 if it has another word.

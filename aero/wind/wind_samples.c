@@ -2,8 +2,6 @@
 // which no sample shows, or jump there.
 #include "aero/wind/wind.h"
 
-#include <math.h>
-
 // The hub, and a point that has both shears of a hub-height file.
 enum { POINTS = 2 };
 

@@ -8,10 +8,7 @@
 #include <complex.h>
 #include <fftw3.h>
 #include <float.h>
-#include <math.h>
 #include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
 
 // The library's planner is one for the process.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)

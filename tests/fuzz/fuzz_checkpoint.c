@@ -2,7 +2,6 @@
 #include "tests/fuzz/fuzz.h"
 
 #include <signal.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>

@@ -2,7 +2,6 @@
 #include "tests/fuzz/fuzz.h"
 
 #include <dirent.h>
-#include <string.h>
 
 // How many files and folders a folder has.
 static int entries(const char *path) {

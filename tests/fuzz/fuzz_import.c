@@ -4,8 +4,6 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/unit/decks.h"
 
-#include <string.h>
-
 enum { ROOM = 1 << 16 };
 
 typedef struct deck {

@@ -2,8 +2,6 @@
 #include "tests/fuzz/fuzz.h"
 #include "tests/verification/verification.h"
 
-#include <string.h>
-
 static const char scene_text[] =
     "simulation: {duration: 2 s, macro_step: 10 ms}\n"
     "bodies:\n"

@@ -1,8 +1,6 @@
 #include "apps/bough/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
-#include <string.h>
-
 // Names the input as each kind of table.
 static const char scene_text[] =
     "simulation: {duration: 2 s, macro_step: 10 ms}\n"

@@ -5,8 +5,6 @@
 #include "cosim/member.h"
 #include "tests/unit/member.h"
 
-#include <stdbool.h>
-
 typedef struct contract_point {
     double t;            // [s]
     const double *state; // (n_state)

@@ -3,8 +3,6 @@
 
 #include "apps/bough/config/text.h"
 
-#include <stdlib.h>
-
 static inline const char *printed_errors(const bough_errors *errors) {
     char *text;
     size_t size;

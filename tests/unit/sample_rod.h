@@ -4,8 +4,6 @@
 #include "flexbody/rod/rod_static.h"
 #include "tests/unit/sample_numbers.h"
 
-#include <string.h>
-
 typedef struct sample_arrays {
     double *span, *stiffness, *damping;
     bough_vec3 *position;

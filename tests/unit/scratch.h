@@ -5,7 +5,6 @@
 #include "tests/unit/scratch_name.h"
 
 #include <dirent.h>
-#include <stdbool.h>
 #include <unistd.h>
 
 enum { SCRATCH_TEXT = 1 << 20 };

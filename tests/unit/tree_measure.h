@@ -5,8 +5,6 @@
 #include "core/tree/loop.h"
 
 #include <assert.h>
-#include <math.h>
-#include <string.h>
 
 // Sums over the moving links. Potential energy is zero with all mass centres in the ground's origin
 // plane normal to gravity; angular momentum is about the ground's origin, in ground axes.

@@ -7,9 +7,6 @@
 #include "apps/bough/scene/scene.h"
 #include "tests/verification/blade_models_internal.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- reading --------------------------------------------------------------------------------------
 
 // clang-format off

@@ -4,8 +4,6 @@
 #include "tests/verification/blade_models_internal.h"
 #include "tests/verification/modal_static.h"
 
-#include <string.h>
-
 bough_status bough_model_scene_sets(bough_arena *arena, const char *scene, const bough_model_sets *given,
                                     const bough_blade_model *model, bough_model_sets *sets) {
     bough_errors errors = {.arena = arena};

@@ -2,9 +2,6 @@
 
 #include "core/base/linalg.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static const double long_time = 1e8;   // γ at which I − γ ∂f/∂y is −γ ∂f/∂y [s]
 static const double tolerance = 1e-11; // of a step, in the shapes' scales
 static const double longest = 5;       // step, in those scales: half a radian

@@ -1,8 +1,5 @@
 #include "tests/verification/oscillator.h"
 
-#include <math.h>
-#include <string.h>
-
 static bool derivative(void *self, double t, const double *y, const double *u, double *rate) {
     const bough_oscillator *o = self;
     (void)t;

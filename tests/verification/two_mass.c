@@ -2,9 +2,6 @@
 
 #include "core/base/linalg.h"
 
-#include <math.h>
-#include <string.h>
-
 bough_two_mass bough_two_mass_default(void) {
     return (bough_two_mass){.s1 = {1, 10, .2}, .s2 = {1, 20, .3}, .k = 10, .c = .5, .y0 = {0, 0, .5, 0}};
 }

@@ -4,8 +4,6 @@
 #include "tests/verification/blade_models.h"
 #include "tests/verification/verify.h"
 
-#include <string.h>
-
 static const bough_verification_kind kinds[] = {
     {"verify", bough_verify_read, bough_verify_perform},
     {"blade-models", bough_blade_models_read, bough_blade_models_perform},

@@ -6,8 +6,6 @@
 #include "core/base/arena.h"
 #include "core/base/status.h"
 
-#include <stdio.h>
-
 typedef struct bough_verification_options {
     const char *folder; // for the results; made if missing
     int threads;        // 0: as the scenes say

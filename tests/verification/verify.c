@@ -4,9 +4,6 @@
 #include "apps/bough/config/schema_keys.h"
 #include "apps/bough/model/simulation.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- quantities -----------------------------------------------------------------------------------
 
 static const char quantity_form[] =

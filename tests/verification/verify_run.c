@@ -10,8 +10,6 @@
 #include "tests/unit/rod_energy.h"
 
 #include <assert.h>
-#include <math.h>
-#include <string.h>
 
 // -- scene ----------------------------------------------------------------------------------------
 

@@ -5,9 +5,6 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/results/progress.h"
 
-#include <math.h>
-#include <string.h>
-
 // What an expectation came to.
 typedef struct verdict {
     double result, error, tolerance; // error: relative where the tolerance is

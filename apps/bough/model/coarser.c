@@ -4,9 +4,6 @@
 #include "cosim/master.h"
 #include "cosim/scheme.h"
 
-#include <math.h>
-#include <string.h>
-
 // -- mesh -----------------------------------------------------------------------------------------
 
 // A rod that carries bodies has an inner vertex.

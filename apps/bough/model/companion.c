@@ -6,9 +6,6 @@
 #include "cosim/scheme.h"
 
 #include <limits.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 // -- building -------------------------------------------------------------------------------------
 
@@ -154,7 +151,7 @@ static double difference(const bough_channel *channel, double a, double b) {
     return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
 }
 
-// A force of a mesh answers accelerations, whose errors are of a lower order.
+// A force of a body with a mesh follows accelerations, whose errors are of a lower order.
 static const double least_ratio_of_force = 0.4;
 
 // Largest error of the air's loads between two samples. With a larger one the period of vibrations is near
@@ -175,8 +172,8 @@ static bool flutters(double run, double companion) {
 static double ratio_of(const bough_companion *c, const bough_channel *channel, double ratio,
                        double ratio_held) {
     if (channel->sampled) return ratio_held;
-    bool answers = channel->kind == BOUGH_KIND_FORCE && !bough_coarser_steps_alone(c->run->scene);
-    return answers ? fmax(ratio, least_ratio_of_force) : ratio;
+    bool follows = channel->kind == BOUGH_KIND_FORCE && !bough_coarser_steps_alone(c->run->scene);
+    return follows ? fmax(ratio, least_ratio_of_force) : ratio;
 }
 
 // The length of the vector that the channel is a component of.

@@ -45,7 +45,8 @@ double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other);
 // a copy of twice the rate.
 double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *other);
 
-// Whether steps of a tight tolerance alone err: rigid bodies as one system, without air and controller.
+// Whether only the integrator's steps err, at a tight tolerance: rigid bodies as one system, without air and
+// controller.
 bool bough_coarser_steps_alone(const bough_scene *scene);
 
 // The same for a copy that is coarser in time alone.

@@ -1,9 +1,6 @@
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/validity.h"
 
-#include <math.h>
-#include <string.h>
-
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
 // Its largest work, relative to that of run and companion, extrapolated to the end; and some milliseconds

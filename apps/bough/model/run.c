@@ -6,7 +6,6 @@
 #include "core/base/linalg.h"
 
 #include <assert.h>
-#include <math.h>
 
 // -- building -------------------------------------------------------------------------------------
 

@@ -302,6 +302,19 @@ TEST(an_error_that_grows_is_followed) {
     assert_true(estimate > 0.7 * error && estimate < 1.5 * error);
 }
 
+// Where its work ends before, the error that grew grows on.
+TEST(an_error_that_grew_grows_on) {
+    check_run(arena, r, "tests/data/scenes/let-go.yaml",
+              sets_of("simulation.coupling={scheme: iterated}",
+                      "simulation.micro={solver: cvode-bdf, rtol: 1e-4}"));
+    int tip = bough_channels_find(&r.channels, "rodTipZ");
+    while (r.simulation->master->time < 0.1) check_ok(bough_run_step(&r));
+    double grown = r.companion->least[tip];
+    r.companion->finer.work = HUGE_VAL;
+    while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
+    assert_true(r.companion->error[tip] > 1.4 * grown);
+}
+
 // A blow excites bending waves that half as many segments do not resolve: the companion has twice as many.
 TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
     static const char *const truth[] = {"bodies[bar].rod.segments=40", "simulation.master.rtol=1e-6",

@@ -2,8 +2,6 @@
 #include "apps/bough/results/recorder.h"
 #include "tests/unit/scratch.h"
 
-#include <stdint.h>
-
 enum { CHANNELS = 4, ROWS = 41, BYTES = 4096 };
 
 typedef struct fixture {

@@ -225,6 +225,21 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
     return l;
 }
 
+// Pressure and separation go back to equilibrium in 1.7 and 3 semi-chords.
+TEST(lags_are_those_of_the_theory) {
+    airfoils *a = *context;
+    const double lag[] = {1.7, 3}, away = 1e-3, step = 0.01;
+    flow in = {20, 14 * degree, 0};
+    for (int k = 0; k < 2; k++) {
+        bough_stall_state state = {0};
+        advance(&a->polar[7], 1, in, 0, &state, NULL);
+        double *x = k ? &state.separation : &state.pressure, rest = *x;
+        *x += away;
+        advance(&a->polar[7], 1, in, step, &state, NULL);
+        check_near(*x - rest, away * exp(-2 * in.speed * step / lag[k]), 1e-12, 1e-9);
+    }
+}
+
 // In stall lift is higher while the angle grows; the loop closes, and halving the step moves it at
 // second order.
 TEST(stall_loop_is_closed) {
