@@ -9,7 +9,7 @@ tolerances. Where these two agree, the finer one is taken for the truth; other s
 promise is broken.
 
   held         estimate up to 1 % of the range
-  warned       estimate above 1 %, or a warning that the estimate lacks vibrations; exit code 0
+  warned       estimate above 1 %, or a warning that the estimate lacks vibrations or forces; exit code 0
   diagnosed    exit code 3 with its reason
   silent       error above 5 %, exit code 0, estimate less than a third of it
   too little   error above 1e-3, estimate less than a third of it
@@ -182,7 +182,8 @@ class Judgement:
         less = max((v for v in settled if settled[v][0] > SMALL),
                    key=lambda v: settled[v][0] / max(settled[v][1], 1e-300), default=None)
         if less is not None and settled[less][0] > 3 * settled[less][1]:
-            if any(warning["limit"] == "fast_vibrations" for warning in run.summary["warnings"]):
+            limits = [warning["limit"] for warning in run.summary["warnings"]]
+            if "fast_vibrations" in limits or ("singular_position" in limits and not is_motion(less.split()[-1])):
                 return "warned", line(less)
             return ("silent" if settled[less][0] > GROSS else "too little"), line(less)
         more = max(settled, key=lambda v: settled[v][1] / max(settled[v][0], 1e-4), default=None)

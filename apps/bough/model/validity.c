@@ -67,7 +67,7 @@ static const struct {
          " frequency is a tenth too high: take more segments than %g"},
     [BOUGH_LIMIT_SINGULAR] =
         {"singular_position",
-         "its closed loop is near a singular position, where its bodies can continue in two ways and the smallest difference decides; margin %.2g"},
+         "its closed loop is near a singular position, where its bodies can continue in two ways and the smallest difference decides; forces there may err by more than estimated; margin %.2g"},
     [BOUGH_LIMIT_WIND] = {"wind_samples", "the wind changes by %.3g m/s and back between two samples of the"
                                           " air, which do not see it: take a higher aero.rate"},
     [BOUGH_LIMIT_ROTATION] = {"rotor_samples",
