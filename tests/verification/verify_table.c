@@ -152,7 +152,7 @@ bough_status bough_verify_perform(bough_arena *arena, const void *study,
     BOUGH_TRY(bough_folder_make(options->folder));
     BOUGH_TRY(bough_folder_open(options->folder, "verify.csv", path, &r.csv));
     bough_status status = perform_all(arena, study, &r);
-    bough_status written = bough_folder_commit(path, r.csv);
+    bough_status written = bough_folder_close(path, r.csv, bough_ok());
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written)) return written;
     if (r.failed == 0) return status;

@@ -320,17 +320,15 @@ static bough_status read_all(bough_arena *arena, conclusion *c) {
     FILE *file;
     BOUGH_TRY(bough_folder_open(c->folder, "cases.csv", path, &file));
     head_cases(s, file);
+    bough_status status = bough_ok();
     for (int i = 0; i < s->n_case; i++) {
-        bough_status status = bough_store_read(c->folder, s, &s->cases[i], &result);
-        if (!bough_is_ok(&status)) {
-            bough_folder_discard(path, file);
-            return status;
-        }
+        status = bough_store_read(c->folder, s, &s->cases[i], &result);
+        if (!bough_is_ok(&status)) break;
         put_case(s, i, &result, file);
         keep(arena, s, &result, &c->note[i]);
         bough_lifetime_add(&c->lifetime, i, &result);
     }
-    return bough_folder_commit(path, file);
+    return bough_folder_close(path, file, status);
 }
 
 static void put_costs(const void *self, FILE *f) {

@@ -171,7 +171,7 @@ bough_status bough_store_write(const char *folder, const bough_study *s, const b
     put_text(f, code, bough_is_ok(&r->outcome) ? "" : r->outcome.message);
     move_result(&(rows){.file = f, .good = true}, s, c, r);
     fputs("end\n", f);
-    return bough_folder_commit(path, f);
+    return bough_folder_close(path, f, bough_ok());
 }
 
 static bool take_head(FILE *f, const case_name name, uint64_t fingerprint, bough_status *outcome) {

@@ -169,10 +169,9 @@ static bough_status write_copy(const bough_run_command *command) {
     errno = 0;
     bool good = fwrite(&h, sizeof h, 1, file) == 1 && fwrite(c->copy, 1, c->size, file) == c->size &&
                 fflush(file) == 0 && fsync(fileno(file)) == 0;
-    if (good) return bough_folder_commit(path, file);
-    bough_status status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
-    bough_folder_discard(path, file);
-    return status;
+    bough_status status =
+        good ? bough_ok() : bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+    return bough_folder_close(path, file, status);
 }
 
 static bool is_due(const bough_run_command *command) {

@@ -346,12 +346,8 @@ static bough_status write_archive(export *x, const char *path) {
         for (int i = 0; i < k && !there; i++) there = strcmp(x->name[i], x->name[k]) == 0;
         if (!there) status = zip_copy(&archive, x->name[k], x->files.item[k].path);
     }
-    if (!bough_is_ok(&status)) {
-        bough_folder_discard(path, file);
-        return status;
-    }
-    zip_end(&archive);
-    return bough_folder_commit(path, file);
+    if (bough_is_ok(&status)) zip_end(&archive);
+    return bough_folder_close(path, file, status);
 }
 
 static void make_token(export *x) {

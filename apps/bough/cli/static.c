@@ -349,7 +349,7 @@ static bough_status write_channels(const equilibrium *x, const mesh_error *mesh,
         putchar('\n');
         fputc('\n', file);
     }
-    return bough_folder_commit(path, file);
+    return bough_folder_close(path, file, bough_ok());
 }
 
 // -- a path: equilibria while the loads grow, with their limit points -----------------------------
@@ -393,13 +393,10 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
     write_path_head(&t);
     bough_status followed =
         bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_path_point}, &report);
-    if (report.points == 0) {
-        bough_folder_discard(path, t.file);
-        return followed;
-    }
+    if (report.points == 0) return bough_folder_close(path, t.file, followed);
     printf("path: %d points, %d limit points, %d steps, ", report.points, report.limits, report.steps);
     printf("to %.7g of the loads\nmesh error: not estimated along a path\n", report.factor);
-    BOUGH_TRY(bough_folder_commit(path, t.file));
+    BOUGH_TRY(bough_folder_close(path, t.file, bough_ok()));
     printf("out: %s\n", path);
     return followed;
 }

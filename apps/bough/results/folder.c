@@ -70,7 +70,7 @@ bough_status bough_folder_write(const char *folder, const char *name,
     FILE *file = NULL;
     BOUGH_TRY(bough_folder_open(folder, name, path, &file));
     write(self, file);
-    return bough_folder_commit(path, file);
+    return bough_folder_close(path, file, bough_ok());
 }
 
 // Regular files only: a symbolic link is not one that bough has made.
@@ -95,23 +95,21 @@ bough_status bough_folder_remove(const char *folder, const char *name) {
     return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
 }
 
-bough_status bough_folder_commit(const char *path, FILE *file) {
+bough_status bough_folder_close(const char *path, FILE *file, bough_status status) {
     partial_path partial;
     name_partial(path, partial);
     bool broken = ferror(file) != 0;
-    if (fclose(file) != 0 || broken) {
+    broken = fclose(file) != 0 || broken;
+    if (!bough_is_ok(&status)) {
+        unlink(partial);
+        return status;
+    }
+    if (broken) {
         return bough_fail(BOUGH_IO, "cannot finish '%.200s': %s", partial,
                           errno ? strerror(errno) : "an earlier write failed");
     }
     if (rename(partial, path) == 0) return bough_ok();
     return bough_fail(BOUGH_IO, "cannot rename '%.200s': %s", partial, strerror(errno));
-}
-
-void bough_folder_discard(const char *path, FILE *file) {
-    partial_path partial;
-    name_partial(path, partial);
-    fclose(file);
-    unlink(partial);
 }
 
 // -- files that grow ------------------------------------------------------------------------------
@@ -158,7 +156,7 @@ bough_status bough_growing_keep(const bough_growing *g, bough_kept *kept) {
 bough_status bough_growing_finish(bough_growing *g) {
     FILE *file = g->file;
     g->file = NULL;
-    return bough_folder_commit(g->path, file);
+    return bough_folder_close(g->path, file, bough_ok());
 }
 
 // -- the lock -------------------------------------------------------------------------------------

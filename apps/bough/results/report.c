@@ -153,10 +153,6 @@ bough_status bough_report_write(bough_arena *arena, int n, const char *const *fo
     fwrite(page, 1, (size_t)(data - page), out);
     bough_status status = add_data(arena, folder[0], out);
     if (bough_is_ok(&status)) status = add_others(arena, n, folder, out);
-    if (!bough_is_ok(&status)) {
-        bough_folder_discard(path, out);
-        return status;
-    }
     fputs(data + sizeof mark - 1, out);
-    return bough_folder_commit(path, out);
+    return bough_folder_close(path, out, status);
 }

@@ -209,10 +209,7 @@ static bough_status pack(bough_arena *arena, void *self) {
     choose_scales(p);
     BOUGH_TRY(bough_folder_open(folder, "channels.outb", path, &out));
     put_head(p, out);
-    bough_status status = put_rows(p, out);
-    if (bough_is_ok(&status)) return bough_folder_commit(path, out);
-    bough_folder_discard(path, out);
-    return status;
+    return bough_folder_close(path, out, put_rows(p, out));
 }
 
 bough_status bough_binary_write(const bough_binary_def *def) {

@@ -80,5 +80,5 @@ bough_status bough_summary_close(bough_summary *s) {
     fputc('\n', s->file);
     FILE *file = s->file;
     s->file = NULL;
-    return bough_folder_commit(s->path, file);
+    return bough_folder_close(s->path, file, bough_ok());
 }
