@@ -40,8 +40,9 @@ static void project_out(bough_arnoldi *a, int first, int n, double *x, double *c
     for (int k = 0; k < n; k++) {
         for (int i = 0; i < length; i++) a->weighted[k * length + i] = a->weight[i] * x[k * length + i];
     }
-    bough_dense_product((bough_product){count, n, length, true, 1, 0}, basis, a->weighted, a->along);
-    bough_dense_product((bough_product){length, n, count, false, -1, 1}, basis, a->along, x);
+    bough_dense_product((bough_product){count, n, length, true, .factor = 1}, basis, a->weighted, a->along);
+    bough_dense_product((bough_product){length, n, count, false, .factor = -1, .keep = 1}, basis, a->along,
+                        x);
     for (int k = 0; k < n && column[0] != NULL; k++) {
         for (int i = 0; i < count; i++) column[k][first + i] += a->along[k * count + i];
     }
@@ -128,5 +129,5 @@ double bough_arnoldi_residual(const bough_arnoldi *a, int k) {
 }
 
 void bough_arnoldi_combine(const bough_arnoldi *a, int n, const double *y, double *x) {
-    bough_dense_product((bough_product){a->length, n, a->done, false, 1, 0}, a->basis, y, x);
+    bough_dense_product((bough_product){a->length, n, a->done, false, .factor = 1}, a->basis, y, x);
 }

@@ -194,14 +194,17 @@ enum { FEW = 8 }; // columns of a product
 
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {
     if (p.m == 0 || p.n == 0) return;
+    int inner = p.k > 0 ? p.k : 1; // leading dimensions are at least 1
+    if (p.rows_a == 0) p.rows_a = p.transposed ? inner : p.m;
+    if (p.rows_b == 0) p.rows_b = inner;
+    if (p.rows_c == 0) p.rows_c = p.m;
     if (p.n <= FEW && p.k > 0) {
         BOUGH_OF_LEVEL(bough_multiply_few, bough_level_chosen())(&p, a, b, c);
         return;
     }
     prepare();
-    int inner = p.k > 0 ? p.k : 1; // leading dimensions are at least 1
-    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, p.transposed ? &inner : &p.m, b,
-           &inner, &p.keep, c, &p.m, 1, 1);
+    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.factor, a, &p.rows_a, b, &p.rows_b, &p.keep, c,
+           &p.rows_c, 1, 1);
 }
 
 bool bough_complex_factor(int n, double *a, int *pivot) {

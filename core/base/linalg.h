@@ -33,10 +33,12 @@ typedef struct bough_product {
     int m, n, k;
     bool transposed; // a
     double factor, keep;
+    // rows of larger matrices that a, b and c are part of, in memory from column to column; 0: they are not
+    int rows_a, rows_b, rows_c;
 } bough_product;
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
 
-// The same for few columns b.
+// The same for few columns b, with all three rows given.
 void bough_multiply_few(const bough_product *p, const double *a, const double *b, double *c);
 
 BOUGH_DECLARE_LEVELS(bough_multiply_few);

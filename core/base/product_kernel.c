@@ -54,29 +54,32 @@ static void add_to_one(int n, four a, weights w, double *restrict y) {
 
 // Rows of c += factor a b
 static void add_rows(const bough_product *p, int n, const double *a, const double *b, double *c) {
-    size_t m = (size_t)p->m, k = (size_t)p->k;
+    size_t rows_a = (size_t)p->rows_a, rows_b = (size_t)p->rows_b, rows_c = (size_t)p->rows_c;
     for (int column = 0; column < p->k; column += COLUMNS) {
         int count = p->k - column < COLUMNS ? p->k - column : COLUMNS;
         // four columns of a, for all columns of c: these by fours, then one by one
-        four some = columns_at(a + (size_t)column * m, m, count);
+        four some = columns_at(a + (size_t)column * rows_a, rows_a, count);
         const double *weight = b + column;
         int j = 0;
         for (; j + FOUR <= p->n; j += FOUR) {
-            double *y = c + (size_t)j * m;
+            double *y = c + (size_t)j * rows_c;
             weights w[FOUR];
-            for (int i = 0; i < FOUR; i++) w[i] = weights_at(p->factor, weight + (size_t)(j + i) * k, count);
-            add_to_four(n, some, w, y, y + m, y + 2 * m, y + 3 * m);
+            for (int i = 0; i < FOUR; i++)
+                w[i] = weights_at(p->factor, weight + (size_t)(j + i) * rows_b, count);
+            add_to_four(n, some, w, y, y + rows_c, y + 2 * rows_c, y + 3 * rows_c);
         }
         for (; j < p->n; j++)
-            add_to_one(n, some, weights_at(p->factor, weight + (size_t)j * k, count), c + (size_t)j * m);
+            add_to_one(n, some, weights_at(p->factor, weight + (size_t)j * rows_b, count),
+                       c + (size_t)j * rows_c);
     }
 }
 
 // c ← keep c, then += factor a b, some rows at a time.
 static void multiply(const bough_product *p, const double *a, const double *b, double *c) {
-    size_t size = (size_t)p->m * (size_t)p->n;
-    if (p->keep == 0) memset(c, 0, size * sizeof *c);
-    for (size_t i = 0; i < size && p->keep != 0 && p->keep != 1; i++) c[i] *= p->keep;
+    for (int j = 0; j < p->n && p->keep != 1; j++) {
+        double *column = c + (size_t)j * (size_t)p->rows_c;
+        for (int i = 0; i < p->m; i++) column[i] = p->keep != 0 ? p->keep * column[i] : 0;
+    }
     for (int row = 0; row < p->m; row += ROWS)
         add_rows(p, p->m - row < ROWS ? p->m - row : ROWS, a + row, b, c + row);
 }
@@ -102,17 +105,17 @@ static void dot(int n, four a, const double *restrict x, const double *restrict 
 
 // Four rows of c by two of its columns at a time.
 static void multiply_transposed(const bough_product *p, const double *a, const double *b, double *c) {
-    size_t k = (size_t)p->k, m = (size_t)p->m;
+    size_t rows_a = (size_t)p->rows_a, rows_b = (size_t)p->rows_b;
     double sum[TWO * COLUMNS];
     for (int i = 0; i < p->m; i += COLUMNS) {
         int count = p->m - i < COLUMNS ? p->m - i : COLUMNS;
-        four some = columns_at(a + (size_t)i * k, k, count);
+        four some = columns_at(a + (size_t)i * rows_a, rows_a, count);
         for (int j = 0; j < p->n; j += TWO) {
             int both = p->n - j < TWO ? 1 : TWO;
-            dot(p->k, some, b + (size_t)j * k, b + (size_t)(j + both - 1) * k, sum);
+            dot(p->k, some, b + (size_t)j * rows_b, b + (size_t)(j + both - 1) * rows_b, sum);
             // entry (i + q % count, j + q / count) of c
             for (int q = 0; q < both * count; q++) {
-                double *to = c + (size_t)(j + q / count) * m + (size_t)(i + q % count);
+                double *to = c + (size_t)(j + q / count) * (size_t)p->rows_c + (size_t)(i + q % count);
                 double before = p->keep != 0 ? p->keep * *to : 0;
                 *to = before + p->factor * sum[q / count * COLUMNS + q % count];
             }

@@ -27,13 +27,13 @@ static void take(bough_arena *arena, work *w) {
 // The states of the air that change: those of a model that is not in use are at rest.
 static void find_air(bough_arena *arena, work *w) {
     const bough_air_tangent *air = w->system->air;
-    size_t n_air = (size_t)air->n_air;
+    size_t n_air = (size_t)air->n_air, all = (size_t)air->all;
     w->air = bough_arena_take(arena, (n_air + 1) * sizeof *w->air);
     w->place = bough_arena_take(arena, (n_air + 1) * sizeof *w->place);
     for (size_t i = 0; i < n_air; i++) {
         bool changes = false;
-        for (size_t j = 0; j < (size_t)w->n && !changes; j++) changes = air->drive[j * n_air + i] != 0;
-        for (size_t j = 0; j < n_air && !changes; j++) changes = air->lag[j * n_air + i] != 0;
+        for (size_t j = 0; j < all && !changes; j++)
+            changes = *bough_air_tangent_entry(air, (size_t)w->n + i, j) != 0;
         w->place[i] = changes ? w->m : -1;
         if (changes) w->air[w->m++] = (int)i;
     }
@@ -127,7 +127,7 @@ static bool orthogonalise(bough_arena *arena, const work *w, const double *of_le
     size_t n = (size_t)w->n, r = (size_t)x->r;
     double *small = bough_arena_doubles(arena, r * r);
     int *pivot = bough_arena_take(arena, r * sizeof *pivot);
-    bough_dense_product((bough_product){x->r, x->r, w->n, true, 1, 0}, of_left, x->right, small);
+    bough_dense_product((bough_product){x->r, x->r, w->n, true, .factor = 1}, of_left, x->right, small);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < r; i++) x->left[j * r + i] = of_left[i * n + j];
     }
@@ -153,27 +153,31 @@ static void follow(bough_arena *arena, work *w, const reduced *x, int columns, c
     size_t size = (size_t)w->n * (size_t)columns;
     double *left = bough_arena_doubles(arena, size);
     memcpy(left, rest, size * sizeof *left);
-    bough_dense_product((bough_product){w->n, columns, x->r, false, -1, 1}, x->right, force, left);
+    bough_dense_product((bough_product){w->n, columns, x->r, false, .factor = -1, .keep = 1}, x->right, force,
+                        left);
     apply(w, columns, left, rest);
 }
 
 // Blocks of the air: L R, G U, H − S, and G by the neglected modes, which follow R without delay.
 static void set_air(bough_arena *arena, work *w, reduced *x) {
     const bough_air_tangent *air = w->system->air;
-    int a = air->n_air;
-    size_t n = (size_t)w->n, r = (size_t)x->r, m = (size_t)w->m, all = (size_t)x->all, n_air = (size_t)a;
+    size_t n = (size_t)w->n, r = (size_t)x->r, m = (size_t)w->m, all = (size_t)x->all;
+    size_t n_air = (size_t)air->n_air;
     double *lift = x->rest = bough_arena_doubles(arena, n * m), *force = bough_arena_doubles(arena, r * m);
     double *drive = bough_arena_doubles(arena, n_air * (r + m));
     // forces of the air's states, on the modes and on the neglected ones
-    for (size_t j = 0; j < m; j++) memcpy(lift + j * n, air->lift + (size_t)w->air[j] * n, n * sizeof *lift);
-    bough_dense_product((bough_product){x->r, w->m, w->n, false, 1, 0}, x->left, lift, force);
+    for (size_t j = 0; j < m; j++)
+        memcpy(lift + j * n, bough_air_tangent_entry(air, 0, n + (size_t)w->air[j]), n * sizeof *lift);
+    bough_dense_product((bough_product){x->r, w->m, w->n, false, .factor = 1}, x->left, lift, force);
     follow(arena, w, x, w->m, force, lift);
     // rates of the air by both
-    bough_dense_product((bough_product){a, x->r, w->n, false, 1, 0}, air->drive, x->right, drive);
-    bough_product by_rest = {a, w->m, w->n, false, 1 / w->system->def->point, 0};
-    bough_dense_product(by_rest, air->drive, lift, drive + n_air * r);
+    bough_product by_modes = {air->n_air, x->r, w->n, false, .factor = 1, .rows_a = air->all},
+                  by_rest = by_modes;
+    bough_dense_product(by_modes, air->matrix + n, x->right, drive);
+    by_rest.n = w->m, by_rest.factor = 1 / w->system->def->point;
+    bough_dense_product(by_rest, air->matrix + n, lift, drive + n_air * r);
     for (size_t j = 0; j < r + m; j++) {
-        const double *lag = j < r ? NULL : air->lag + (size_t)w->air[j - r] * n_air;
+        const double *lag = j < r ? NULL : bough_air_tangent_entry(air, n, n + (size_t)w->air[j - r]);
         double *to = x->matrix + j * all;
         if (j >= r) memcpy(to, force + (j - r) * r, r * sizeof *to);
         for (size_t i = 0; i < m; i++)
@@ -247,42 +251,26 @@ static double participation(const reduced *x, size_t j, bool pair) {
 
 // -- the whole system -----------------------------------------------------------------------------
 
-// Vectors of members and air, and their coordinates in the subspace of the modes.
+// Vectors of members and air, with coordinates in the subspace of the modes.
 typedef struct vectors {
     int columns;
-    double *members, *air; // (n × columns), (m × columns)
-    double *modes;         // (r × columns)
-    double *joined;        // (all × columns) coordinates, then air
+    double *members;     // (n × columns)
+    double *coordinates; // (all × columns), r of the modes and then the air's states
 } vectors;
 
 static vectors take_vectors(bough_arena *arena, const work *w, const reduced *x, int columns) {
     size_t k = (size_t)columns + 1;
-    return (vectors){
-        columns, bough_arena_doubles(arena, (size_t)w->n * k), bough_arena_doubles(arena, (size_t)w->m * k),
-        bough_arena_doubles(arena, (size_t)x->r * k), bough_arena_doubles(arena, (size_t)x->all * k)};
-}
-
-static void join(const reduced *x, vectors *v) {
-    size_t r = (size_t)x->r, all = (size_t)x->all, m = all - r;
-    for (size_t k = 0; k < (size_t)v->columns; k++) {
-        memcpy(v->joined + k * all, v->modes + k * r, r * sizeof(double));
-        memcpy(v->joined + k * all + r, v->air + k * m, m * sizeof(double));
-    }
-}
-
-static void split(const reduced *x, vectors *v) {
-    size_t r = (size_t)x->r, all = (size_t)x->all, m = all - r;
-    for (size_t k = 0; k < (size_t)v->columns; k++) {
-        memcpy(v->modes + k * r, v->joined + k * all, r * sizeof(double));
-        memcpy(v->air + k * m, v->joined + k * all + r, m * sizeof(double));
-    }
+    return (vectors){columns, bough_arena_doubles(arena, (size_t)w->n * k),
+                     bough_arena_doubles(arena, (size_t)x->all * k)};
 }
 
 // Members += U modes + γ rest air
 static void add_coordinates(const work *w, const reduced *x, vectors *v) {
-    bough_dense_product((bough_product){w->n, v->columns, x->r, false, 1, 1}, x->right, v->modes, v->members);
-    bough_dense_product((bough_product){w->n, v->columns, w->m, false, 1 / w->system->def->point, 1}, x->rest,
-                        v->air, v->members);
+    bough_product modes = {w->n, v->columns, x->r, false, .factor = 1, .keep = 1, .rows_b = x->all},
+                  air = modes;
+    bough_dense_product(modes, x->right, v->coordinates, v->members);
+    air.k = w->m, air.factor = 1 / w->system->def->point;
+    bough_dense_product(air, x->rest, v->coordinates + x->r, v->members);
 }
 
 static bool factor_reduced(bough_arena *arena, const work *w, reduced *x) {
@@ -295,15 +283,16 @@ static bool factor_reduced(bough_arena *arena, const work *w, reduced *x) {
 }
 
 // Air += γ G members
-static void add_drive(bough_arena *arena, const work *w, vectors *v) {
+static void add_drive(bough_arena *arena, const work *w, const reduced *x, vectors *v) {
     const bough_air_tangent *t = w->system->air;
     size_t n_air = (size_t)t->n_air;
     double *rate = bough_arena_doubles(arena, n_air * (size_t)v->columns + 1);
-    bough_dense_product((bough_product){t->n_air, v->columns, w->n, false, 1 / w->system->def->point, 0},
-                        t->drive, v->members, rate);
+    bough_product p = {t->n_air,        v->columns, w->n, false, .factor = 1 / w->system->def->point,
+                       .rows_a = t->all};
+    bough_dense_product(p, t->matrix + t->n, v->members, rate);
     for (size_t k = 0; k < (size_t)v->columns; k++) {
-        for (size_t i = 0; i < (size_t)w->m; i++)
-            v->air[k * (size_t)w->m + i] += rate[k * n_air + (size_t)w->air[i]];
+        double *air = v->coordinates + k * (size_t)x->all + x->r;
+        for (int i = 0; i < w->m; i++) air[i] += rate[k * n_air + (size_t)w->air[i]];
     }
 }
 
@@ -314,16 +303,16 @@ static vectors apply_whole(bough_arena *arena, work *w, const reduced *x, const 
     // the part outside the subspace
     double *other = bough_arena_doubles(arena, size + 1);
     memcpy(other, z->members, size * sizeof *other);
-    bough_dense_product((bough_product){x->r, z->columns, w->n, false, 1, 0}, x->left, z->members,
-                        image.modes);
-    bough_dense_product((bough_product){w->n, z->columns, x->r, false, -1, 1}, x->right, image.modes, other);
+    memcpy(image.coordinates, z->coordinates, (size_t)x->all * (size_t)z->columns * sizeof *other);
+    bough_dense_product((bough_product){x->r, z->columns, w->n, false, .factor = 1, .rows_c = x->all},
+                        x->left, z->members, image.coordinates);
+    bough_dense_product(
+        (bough_product){w->n, z->columns, x->r, false, .factor = -1, .keep = 1, .rows_b = x->all}, x->right,
+        image.coordinates, other);
     apply(w, z->columns, other, image.members);
     // the subspace and the air, which it drives
-    memcpy(image.air, z->air, (size_t)w->m * (size_t)z->columns * sizeof *image.air);
-    add_drive(arena, w, &image);
-    join(x, &image);
-    bough_dense_solve(x->all, z->columns, x->factor, x->pivot, image.joined);
-    split(x, &image);
+    add_drive(arena, w, x, &image);
+    bough_dense_solve(x->all, z->columns, x->factor, x->pivot, image.coordinates);
     add_coordinates(w, x, &image);
     return image;
 }
@@ -337,12 +326,13 @@ typedef struct listed {
 static int parts_of(const bough_eigen_pair *pair) { return 1 + (pair->imaginary > 0); }
 
 // Real and imaginary part of a vector of the whole, one after the other (2 × length).
-static void collect_parts(const work *w, const vectors *v, size_t column, int parts, double *to) {
+static void collect_parts(const work *w, const reduced *x, const vectors *v, size_t column, int parts,
+                          double *to) {
     size_t n = (size_t)w->n, m = (size_t)w->m;
     memset(to, 0, 2 * (n + m) * sizeof *to);
     for (size_t part = 0; part < (size_t)parts; part++, to += n + m) {
         memcpy(to, v->members + (column + part) * n, n * sizeof *to);
-        memcpy(to + n, v->air + (column + part) * m, m * sizeof *to);
+        memcpy(to + n, v->coordinates + (column + part) * (size_t)x->all + x->r, m * sizeof *to);
     }
 }
 
@@ -374,17 +364,16 @@ static void expand(bough_arena *arena, work *w, const reduced *x, int count, con
     vectors z = take_vectors(arena, w, x, count_parts(count, mode));
     for (int k = 0; k < count; k++) {
         size_t parts = (size_t)parts_of(&mode[k].pair);
-        memcpy(z.joined + column * all, x->vector + mode[k].column * all, parts * all * sizeof *z.joined);
+        memcpy(z.coordinates + column * all, x->vector + mode[k].column * all, parts * all * sizeof *to);
         column += parts;
     }
-    split(x, &z);
     add_coordinates(w, x, &z);
     vectors image = apply_whole(arena, w, x, &z);
     column = 0;
     for (int k = 0; k < count; k++) {
         int parts = parts_of(&mode[k].pair);
-        collect_parts(w, &z, column, parts, from);
-        collect_parts(w, &image, column, parts, to);
+        collect_parts(w, x, &z, column, parts, from);
+        collect_parts(w, x, &image, column, parts, to);
         memcpy(pair[k].shape_real, to, n * sizeof *to);
         memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
         pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
@@ -403,10 +392,9 @@ static vectors left_coordinates(bough_arena *arena, const work *w, const reduced
         for (size_t part = 0; part < (size_t)parts_of(&mode[k].pair); part++, column++) {
             const double *row = x->inverse + mode[k].column + part;
             for (size_t i = 0; i < all; i++)
-                y.joined[column * all + i] = part == 0 ? row[i * all] : -row[i * all];
+                y.coordinates[column * all + i] = part == 0 ? row[i * all] : -row[i * all];
         }
     }
-    split(x, &y);
     return y;
 }
 
@@ -421,16 +409,21 @@ static void find_left(bough_arena *arena, work *w, const reduced *x, int count, 
     double *both = bough_arena_doubles(arena, 2 * (n + (size_t)w->m));
     for (size_t k = 0; k < columns; k++) {
         for (size_t i = 0; i < (size_t)w->m; i++)
-            of_air[k * n_air + (size_t)w->air[i]] = y.air[k * (size_t)w->m + i];
+            of_air[k * n_air + (size_t)w->air[i]] = y.coordinates[k * (size_t)x->all + (size_t)x->r + i];
     }
-    bough_dense_product((bough_product){w->n, y.columns, t->n_air, true, 1 / w->system->def->point, 0},
-                        t->drive, of_air, force);
+    bough_product p = {
+        w->n, y.columns, t->n_air, true, .factor = 1 / w->system->def->point, .rows_a = t->all};
+    bough_dense_product(p, t->matrix + t->n, of_air, force);
     bough_air_inverse_apply(w->inverse, true, y.columns, force, y.members);
-    bough_dense_product((bough_product){x->r, y.columns, w->n, true, -1, 1}, x->right, y.members, y.modes);
-    bough_dense_product((bough_product){w->n, y.columns, x->r, true, 1, 1}, x->left, y.modes, y.members);
+    bough_dense_product(
+        (bough_product){x->r, y.columns, w->n, true, .factor = -1, .keep = 1, .rows_c = x->all}, x->right,
+        y.members, y.coordinates);
+    bough_dense_product(
+        (bough_product){w->n, y.columns, x->r, true, .factor = 1, .keep = 1, .rows_b = x->all}, x->left,
+        y.coordinates, y.members);
     for (int k = 0; k < count; k++) {
         int parts = parts_of(&mode[k].pair);
-        collect_parts(w, &y, column, parts, both);
+        collect_parts(w, x, &y, column, parts, both);
         vector[k].left = spread(w, both);
         column += (size_t)parts;
     }

@@ -36,14 +36,14 @@ static bool find_others(bough_arena *arena, bough_air_inverse *x) {
 static void add_products(const bough_air_inverse *x, int m, const double *a, int columns, const double *b,
                          double *c) {
     for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){m, columns, x->r, true, 1, 1}, a + (size_t)(p * m) * (size_t)x->r,
-                            b + (size_t)(p * columns) * (size_t)x->r, c);
+        bough_dense_product((bough_product){m, columns, x->r, true, .factor = 1, .keep = 1},
+                            a + (size_t)(p * m) * (size_t)x->r, b + (size_t)(p * columns) * (size_t)x->r, c);
 }
 
 // c (n_part × columns × r) += a b, a (n_part × n_other × r), b (columns × n_other).
 static void spread(const bough_air_inverse *x, const double *a, int columns, const double *b, double *c) {
     for (int p = 0; p < x->n_part; p++)
-        bough_dense_product((bough_product){x->r, columns, x->n_other, false, 1, 1},
+        bough_dense_product((bough_product){x->r, columns, x->n_other, false, .factor = 1, .keep = 1},
                             a + (size_t)(p * x->n_other) * (size_t)x->r, b,
                             c + (size_t)(p * columns) * (size_t)x->r);
 }
@@ -86,7 +86,8 @@ static void follow_blade(bough_arena *arena, const bough_air_inverse *x, int bla
         bough_whole_solve_of(whole, member);
         memcpy(change + j * n_output, whole->output_change + first, n_output * sizeof *change);
     }
-    bough_dense_product((bough_product){x->n_other, x->r, (int)n_output, false, 1, 0}, by_output, change, y);
+    bough_dense_product((bough_product){x->n_other, x->r, (int)n_output, false, .factor = 1}, by_output,
+                        change, y);
 }
 
 // Yᵀ into x->from: what forces on the blades do to the others, P_oo⁻¹ P_ob.
@@ -111,7 +112,7 @@ static void set_among(bough_arena *arena, const bough_air_inverse *x, double *am
     int *place = bough_arena_take(arena, n * sizeof *place);
     double *rate = bough_arena_doubles(arena, square(def->n_part) + 1);
     for (size_t j = 0; j < n_other; j++) {
-        const double *column = x->system->air->motion + (size_t)x->other[j] * n;
+        const double *column = bough_air_tangent_entry(x->system->air, 0, (size_t)x->other[j]);
         place[x->other[j]] = (int)j;
         for (size_t i = 0; i < n_other; i++) among[j * n_other + i] = -x->gamma * column[x->other[i]];
         if (x->other[j] < x->system->simulation->tree->n_q) among[j * n_other + j] += going_back;
@@ -128,14 +129,15 @@ static void set_among(bough_arena *arena, const bough_air_inverse *x, double *am
 
 // N_bo or N_obᵀ, by z (n_other × n).
 static void set_border(const bough_air_inverse *x, bool transposed, double *z, double *border) {
-    const double *a = x->system->air->motion;
+    const bough_air_tangent *air = x->system->air;
     const int *row = x->system->def->row;
     size_t n = (size_t)x->n;
     for (size_t j = 0; j < (size_t)x->n_other; j++) {
         size_t other = (size_t)x->other[j];
         for (int k = 0; k < x->n_part * x->r; k++) {
             size_t blade = (size_t)row[k];
-            z[j * n + blade] = -x->gamma * a[transposed ? blade * n + other : other * n + blade];
+            z[j * n + blade] = -x->gamma * *(transposed ? bough_air_tangent_entry(air, other, blade)
+                                                        : bough_air_tangent_entry(air, blade, other));
         }
     }
     bough_blade_inverse_gather(x->blades, x->n_other, z, border);
@@ -172,7 +174,7 @@ static bool set(bough_arena *arena, const bough_air_inverse *x) {
     set_columns(x, z);
     set_among(arena, x, among);
     if (x->blades && !set_blades(arena, x, z, among, k)) return false;
-    bough_dense_product((bough_product){n, n, n, false, 1, 1}, among, x->others, k);
+    bough_dense_product((bough_product){n, n, n, false, .factor = 1, .keep = 1}, among, x->others, k);
     for (size_t i = 0; i < square(n); i += (size_t)n + 1) k[i] += 1, x->inverse[i] = 1;
     if (!bough_dense_factor(n, k, pivot)) return false;
     bough_dense_solve(n, n, k, pivot, x->inverse);
@@ -185,7 +187,9 @@ static bool set(bough_arena *arena, const bough_air_inverse *x) {
 static void find_force(bough_arena *arena, const bough_air_inverse *x, const double *y, double *z) {
     const bough_modes_def *def = x->system->def;
     double *rate = bough_arena_doubles(arena, square(def->n_part));
-    bough_dense_product((bough_product){x->n, 1, x->n, false, x->gamma, 1}, x->system->air->motion, y, z);
+    bough_dense_product(
+        (bough_product){x->n, 1, x->n, false, .factor = x->gamma, .keep = 1, .rows_a = x->system->air->all},
+        x->system->air->matrix, y, z);
     if (def->spin != 0) bough_modes_rate(def, rate);
     for (int k = 0; k < def->n_part * def->n_part; k++) {
         const int *to = def->row + k / def->n_part * def->n_row,
@@ -269,7 +273,7 @@ static void project(const bough_air_inverse *x, int n, double *z) {
 
 // g ← P_oo g or K⁻¹ g, or by the transpose.
 static void multiply_others(const bough_air_inverse *x, const double *matrix, bool transposed, int n) {
-    bough_product p = {x->n_other, n, x->n_other, transposed, 1, 0};
+    bough_product p = {x->n_other, n, x->n_other, transposed, .factor = 1};
     bough_dense_product(p, matrix, x->force, x->moved);
     memcpy(x->force, x->moved, (size_t)n * (size_t)x->n_other * sizeof *x->force);
 }

@@ -32,7 +32,7 @@ bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimut
                           .blend = x->blend,
                           .share = x->share};
     m->air_row = bough_arena_take(arena, (size_t)(m->n_part * m->n_air + 1) * sizeof *m->air_row);
-    m->place = bough_arena_take(arena, (size_t)(t->n + t->n_air + 1) * sizeof *m->place);
+    m->place = bough_arena_take(arena, (size_t)(t->all + 1) * sizeof *m->place);
     bough_air_tangent_rows(x->first, group, m->n_air, m->air_row);
     for (int k = 0; k < m->n_part; k++) {
         int before = 1 + k * (m->n_row + m->n_air);
@@ -49,16 +49,10 @@ static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int 
     return (size_t)(t->n + m->air_row[blade * m->n_air + j - m->n_row]);
 }
 
-double *bough_air_tangent_entry(const bough_air_tangent *t, size_t row, size_t column) {
-    size_t n = (size_t)t->n, m = (size_t)t->n_air;
-    if (column < n) return row < n ? &t->motion[column * n + row] : &t->drive[column * m + row - n];
-    return row < n ? &t->lift[(column - n) * n + row] : &t->lag[(column - n) * m + row - n];
-}
-
 // A column that belongs to no blade: Cᵀ transforms the rates of the blades to those that an observer at rest
 // sees.
 static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
-    for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++)
+    for (size_t i = 0; i < (size_t)t->all; i++)
         if (m->place[i] == 0) *bough_air_tangent_entry(t, i, at) += m->share * slope[i];
     for (int j = 0; j < m->n_row + m->n_air; j++) {
         for (int k = 0; k < m->n_part; k++) {
@@ -75,7 +69,7 @@ static void add_other(const bough_air_mean *m, size_t at, const double *slope, b
 static void add_of_blade(const bough_air_mean *m, int blade, int j, const double *slope,
                          bough_air_tangent *t) {
     int all = m->n_row + m->n_air;
-    for (size_t i = 0; i < (size_t)(t->n + t->n_air); i++) {
+    for (size_t i = 0; i < (size_t)t->all; i++) {
         if (slope[i] == 0) continue;
         if (m->place[i] > 0) {
             int to = (m->place[i] - 1) / all - blade, row = (m->place[i] - 1) % all;
@@ -127,7 +121,6 @@ void bough_air_tangent_close(bough_arena *arena, const bough_air_azimuth *x, bou
     if (fabs(x->group->speed) > 0) { // the mean over a revolution of a derivative by azimuth is 0
         int azimuth, speed;
         bough_tree_joint_rows(x->simulation->tree, x->simulation->scene->turbine.rotor, &azimuth, &speed);
-        memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
-        memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
+        memset(bough_air_tangent_entry(t, 0, (size_t)azimuth), 0, (size_t)t->all * sizeof(double));
     }
 }

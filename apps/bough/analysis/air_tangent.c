@@ -78,12 +78,10 @@ static void settle(work *w, const double *state) {
 }
 
 // Slopes of the rates of members and air, by the difference of both sides in the work.
-static void set_column(const work *w, double between, double *column, double *air_column) {
+static void set_column(const work *w, double between, double *column) {
     int n = w->whole->assembly->n_state;
     for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / between;
-    for (int k = 0; k < w->n_air; k++) {
-        air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / between;
-    }
+    for (int k = 0; k < w->n_air; k++) column[n + k] = (w->air_rate[1][k] - w->air_rate[0][k]) / between;
 }
 
 // Sets the state and the air at rest about it, before a change.
@@ -102,13 +100,10 @@ static bool meets_air(const bough_simulation *s, int member) {
 
 // Stores the slopes in the work as the column of a state, of the members and then of the air.
 static void put_column(const work *w, int at, bough_air_tangent *t) {
-    size_t n = (size_t)t->n, column = (size_t)at;
-    if (w->mean) {
+    if (w->mean)
         bough_air_mean_add(w->mean, at, w->slope, t);
-        return;
-    }
-    memcpy(bough_air_tangent_entry(t, 0, column), w->slope, n * sizeof(double));
-    memcpy(bough_air_tangent_entry(t, n, column), w->slope + n, (size_t)t->n_air * sizeof(double));
+    else
+        memcpy(bough_air_tangent_entry(t, 0, (size_t)at), w->slope, (size_t)t->all * sizeof *w->slope);
 }
 
 static void change(work *w, int at, double size) {
@@ -123,7 +118,7 @@ static bough_status follow_state(work *w, const double *state, int at, double si
     begin_change(w, state);
     change(w, at, size);
     BOUGH_TRY(find_rates(w, state, w->rate[1], w->air_rate[1]));
-    set_column(w, size, w->slope, w->slope + t->n);
+    set_column(w, size, w->slope);
     put_column(w, at, t);
     return bough_ok();
 }
@@ -232,9 +227,7 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     return b;
 }
 
-static void find_changes(blades *b) {
-    set_column(b->w, 1, b->changed, b->changed + b->w->whole->assembly->n_state);
-}
+static void find_changes(blades *b) { set_column(b->w, 1, b->changed); }
 
 // Slopes of a blade's rates by its own state nearest to them.
 static void add_own(blades *b, int blade, bough_air_tangent *t) {
@@ -283,7 +276,7 @@ static bough_status follow_loads(const blades *b, const double *state, int blade
         bough_aero_link_loads(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, b->number[k],
                               b->load[k == blade] + (size_t)k * b->n_load);
     BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[1]));
-    set_column(w, b->size[j], w->slope, w->slope + t->n);
+    set_column(w, b->size[j], w->slope);
     for (int i = 0; i < b->n_row; i++) w->slope[b->at[blade * b->n_all + i]] = 0;
     memset(w->slope + t->n, 0, (size_t)t->n_air * sizeof(double));
     put_column(w, b->at[blade * b->n_all + j], t);
@@ -404,7 +397,6 @@ static bough_status follow_others(work *w, const double *state, const bough_blad
 
 static bough_status follow_inputs(work *w, const double *state, const bough_air_inputs *inputs,
                                   bough_air_tangent *t) {
-    size_t n = (size_t)w->whole->assembly->n_state;
     for (int k = 0; k < inputs->n; k++) {
         for (int side = 0; side < 2; side++) {
             begin_change(w, state);
@@ -414,7 +406,7 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
             inputs->set(inputs->self, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
         }
-        set_column(w, 2 * inputs->size[k], t->input + (size_t)k * n, t->input_drive + (size_t)k * t->n_air);
+        set_column(w, 2 * inputs->size[k], t->input + (size_t)k * (size_t)t->all);
     }
     return bough_ok();
 }
@@ -429,16 +421,13 @@ static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, d
 }
 
 static bough_air_tangent take_tangent(bough_arena *arena, const work *w, int inputs) {
-    size_t n = (size_t)w->whole->assembly->n_state, m = (size_t)w->n_air, n_input = (size_t)inputs;
-    return (bough_air_tangent){.n = (int)n,
+    int n = w->whole->assembly->n_state, all = n + w->n_air;
+    return (bough_air_tangent){.n = n,
                                .n_air = w->n_air,
+                               .all = all,
                                .n_per_blade = w->n_air / w->simulation->scene->turbine.n_blade,
-                               .motion = bough_arena_doubles(arena, n * n),
-                               .lift = bough_arena_doubles(arena, n * m + 1),
-                               .drive = bough_arena_doubles(arena, n * m + 1),
-                               .lag = bough_arena_doubles(arena, m * m + 1),
-                               .input = bough_arena_doubles(arena, n * n_input + 1),
-                               .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
+                               .matrix = bough_arena_doubles(arena, (size_t)all * (size_t)all),
+                               .input = bough_arena_doubles(arena, (size_t)(all * inputs) + 1)};
 }
 
 // Brings the air to rest about the state and finds the rates there.
@@ -473,7 +462,7 @@ static bough_status follow_all(bough_arena *arena, work *w, const double *state,
 bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
     work w = start(arena, x->simulation, x->whole, x->time, dynamic);
-    if (t->motion == NULL) *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
+    if (t->matrix == NULL) *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
     if (x->blend && x->group->n > 0) w.mean = bough_air_mean_create(arena, x, t);
     bough_status status = follow_all(arena, &w, x->state, x->group, t);
     if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, x->state, inputs, t);
@@ -514,6 +503,6 @@ bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_o
     if (!to_one_side || !x->known) BOUGH_TRY(change_by(x, to_one_side ? 0 : -size, change, 0));
     x->known = to_one_side;
     BOUGH_TRY(change_by(x, size, change, 1));
-    set_column(&x->w, to_one_side ? size : 2 * size, image, image + x->w.whole->assembly->n_state);
+    set_column(&x->w, to_one_side ? size : 2 * size, image);
     return bough_ok();
 }

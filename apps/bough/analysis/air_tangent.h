@@ -14,18 +14,16 @@ static inline bool bough_air_follows(const bough_scene *scene) {
 }
 
 typedef struct bough_air_tangent {
-    int n, n_air;        // states of the members, of the air
-    int n_per_blade;     // of the air, blade after blade
-    double *motion;      // A (n × n), column-major as all
-    double *lift;        // R (n × n_air)
-    double *drive;       // G (n_air × n)
-    double *lag;         // H (n_air × n_air)
-    double *input;       // ẏ by the inputs, with and without the air (n × n_input)
-    double *input_drive; // K (n_air × n_input)
+    int n, n_air;    // states of the members, of the air
+    int all;         // n + n_air
+    int n_per_blade; // of the air, blade after blade
+    double *matrix;  // [A R; G H] (all × all), column-major
+    double *input;   // ẏ by the inputs, with and without the air, and K (all × n_input), column-major
 } bough_air_tangent;
 
-// Entry of the four matrices as one, [A R; G H].
-double *bough_air_tangent_entry(const bough_air_tangent *tangent, size_t row, size_t column);
+static inline double *bough_air_tangent_entry(const bough_air_tangent *tangent, size_t row, size_t column) {
+    return tangent->matrix + column * (size_t)tangent->all + row;
+}
 
 // Inputs of the scene.
 typedef struct bough_air_inputs {

@@ -98,7 +98,7 @@ static void multiply_rows(const bough_blade_inverse *x, bool transposed, const d
     int in = transposed ? x->d : x->r, out = transposed ? x->r : x->d;
     size_t block = (size_t)x->d * (size_t)x->r;
     for (const term *t = x->term; t < x->term + x->n_term; t++) {
-        bough_product product = {out, columns, in, transposed, t->sign[transposed], 1};
+        bough_product product = {out, columns, in, transposed, .factor = t->sign[transposed], .keep = 1};
         bough_dense_product(product, matrix + (size_t)t->matrix * block,
                             z + (size_t)(t->argument * columns) * (size_t)in,
                             c + (size_t)(t->image * columns) * (size_t)out);
@@ -206,7 +206,7 @@ static alone find_alone(bough_arena *arena, const bough_blade_inverse *x) {
 // Σ (block of blades 0, k) cos or sin of a harmonic times their angle.
 static void sum_harmonics(bough_arena *arena, const bough_blade_inverse *x) {
     const bough_modes_def *def = x->system->def;
-    size_t n = (size_t)x->n, r = (size_t)x->r, d = (size_t)x->d;
+    size_t r = (size_t)x->r, d = (size_t)x->d;
     double *rate = bough_arena_doubles(arena, square(x->n_part));
     if (def->spin != 0) bough_modes_rate(def, rate);
     for (int k = 0; k < x->n_part * x->n_part; k++) {
@@ -216,8 +216,8 @@ static void sum_harmonics(bough_arena *arena, const bough_blade_inverse *x) {
         double *sum = x->air + (size_t)part * d * r;
         x->spin[part] += factor * rate[blade];
         for (size_t j = 0; j < r; j++) {
-            const double *from =
-                x->system->air->motion + (size_t)def->row[(size_t)blade * r + j] * n + def->row[x->n_slow];
+            size_t column = (size_t)def->row[(size_t)blade * r + j];
+            const double *from = bough_air_tangent_entry(x->system->air, (size_t)def->row[x->n_slow], column);
             for (size_t i = 0; i < d; i++) sum[j * d + i] -= factor * from[i];
         }
     }
@@ -305,8 +305,8 @@ static bool factor(bough_arena *arena, const bough_blade_inverse *x) {
     for (int part = 0; part < x->n_part; part++) {
         double *to = u + (size_t)part * block;
         memcpy(to, b.dynamic, block * sizeof *to);
-        bough_dense_product((bough_product){x->d, x->r, x->d, false, 1, x->spin[part]}, b.dynamic + slow * d,
-                            x->air + (size_t)part * block, to);
+        bough_dense_product((bough_product){x->d, x->r, x->d, false, .factor = 1, .keep = x->spin[part]},
+                            b.dynamic + slow * d, x->air + (size_t)part * block, to);
     }
     follow_kinematics(arena, x, u);
     for (int m = 0; m < n_harmonic(x); m++) {

@@ -101,12 +101,13 @@ static void times_point(const work *w, const double *x, double *z) {
 static void step(bough_arena *arena, const work *w, bool left, const double *x, const double *air,
                  double *image, double *rate) {
     const bough_air_tangent *t = w->system->air;
-    size_t size = (size_t)w->n * (size_t)w->q;
+    size_t n = (size_t)w->n, size = n * (size_t)w->q;
     double *z = bough_arena_doubles(arena, size + 1), *force = bough_arena_doubles(arena, size + 1);
     times_point(w, x, z);
     memcpy(force, z, size * sizeof *force);
-    bough_dense_product((bough_product){w->n, w->q, w->m, left, w->gamma, 1}, left ? t->drive : t->lift, air,
-                        force);
+    bough_dense_product(
+        (bough_product){w->n, w->q, w->m, left, .factor = w->gamma, .keep = 1, .rows_a = t->all},
+        left ? bough_air_tangent_entry(t, n, 0) : bough_air_tangent_entry(t, 0, n), air, force);
     bough_air_inverse_apply(w->inverse, left, w->q, force, image);
     for (size_t i = 0; i < size; i++) rate[i] = (image[i] - z[i]) / w->gamma;
 }
@@ -140,8 +141,10 @@ static double *air_rates(bough_arena *arena, const work *w, const side *right) {
     int parts = w->system->def->n_part, n = t->n_per_blade;
     int *row = bough_arena_take(arena, ((size_t)(parts * n) + 1) * sizeof *row);
     double *rate = bough_arena_doubles(arena, (size_t)w->m * 2 * (size_t)w->q + 1);
-    bough_dense_product((bough_product){w->m, 2 * w->q, w->n, false, 1, 0}, t->drive, right->members, rate);
-    bough_dense_product((bough_product){w->m, w->q, w->m, false, 1, 1}, t->lag, right->air, rate);
+    bough_dense_product((bough_product){w->m, 2 * w->q, w->n, false, .factor = 1, .rows_a = t->all},
+                        t->matrix + t->n, right->members, rate);
+    bough_dense_product((bough_product){w->m, w->q, w->m, false, .factor = 1, .keep = 1, .rows_a = t->all},
+                        bough_air_tangent_entry(t, (size_t)w->n, (size_t)w->n), right->air, rate);
     if (w->system->def->spin == 0) return rate;
     bough_air_tangent_rows(w->system->simulation, w->system->group, n, row);
     for (int c = 0; c < w->q; c++) {
@@ -179,7 +182,8 @@ static bool reduce(bough_arena *arena, const work *w, const side *right, const s
     x->value = bough_arena_doubles(arena, 2 * (size_t)q + 1);
     bough_arena_each(arena, size, &x->length, &x->matrix, &x->right, &x->image, &x->left);
     const double *rate = air_rates(arena, w, right);
-    const bough_product members = {q, q, w->n, true, 1, 0}, air = {q, q, w->m, true, 1, 1};
+    const bough_product members = {q, q, w->n, true, .factor = 1},
+                        air = {q, q, w->m, true, .factor = 1, .keep = 1};
     bough_dense_product(members, left->members, right->rate, x->matrix);
     bough_dense_product(air, left->air, rate, x->matrix);
     bough_dense_product(members, left->members, right->members, x->length);
@@ -189,7 +193,7 @@ static bool reduce(bough_arena *arena, const work *w, const side *right, const s
         !bough_dense_eigen(q, x->matrix, x->value, x->right,
                            bough_arena_doubles(arena, BOUGH_EIGEN_WORK((size_t)q) + 1)))
         return false;
-    bough_dense_product((bough_product){q, q, q, false, 1, 0}, x->length, x->right, x->image);
+    bough_dense_product((bough_product){q, q, q, false, .factor = 1}, x->length, x->right, x->image);
     return divide(arena, q, x->right, x->left);
 }
 

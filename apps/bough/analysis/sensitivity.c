@@ -165,15 +165,6 @@ static double length_of(int n, const double complex *a) {
     return sqrt(sum);
 }
 
-// The air's part of column j.
-static void add_air(const linear *x, const bough_air_tangent *t, size_t j, double *column) {
-    size_t n = (size_t)x->n, m = (size_t)x->m;
-    const double *of_members = j < n ? t->motion + j * n : t->lift + (j - n) * n;
-    const double *of_air = j < n ? t->drive + j * m : t->lag + (j - n) * m;
-    for (size_t i = 0; i < n; i++) column[i] += of_members[i];
-    for (size_t i = 0; i < m; i++) column[n + i] += of_air[i];
-}
-
 // The matrix by its columns. Rows of states of the air that never change are 0.
 static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
     size_t all = (size_t)(x->n + x->m);
@@ -184,7 +175,7 @@ static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
         double *column = matrix + j * all;
         unit[j] = 1;
         BOUGH_TRY(multiply_members(x, size_of(x, unit), unit, column));
-        if (x->in_air) add_air(x, &air, j, column);
+        for (size_t i = 0; i < all && x->in_air; i++) column[i] += air.matrix[j * all + i];
         for (int k = 0; k < x->point.n_held; k++) column[x->point.held[k]] = 0;
         unit[j] = 0;
     }

@@ -220,22 +220,11 @@ static bough_status by_inputs(work *w, bough_state_space *to) {
     return bough_ok();
 }
 
-static void add_block(const double *from, size_t rows, size_t columns, double *to, size_t stride) {
-    for (size_t j = 0; j < columns; j++) {
-        for (size_t i = 0; i < rows; i++) to[j * stride + i] += from[j * rows + i];
-    }
-}
-
 // Adds the air: its part of the rates of the bodies, and its own rates.
 static void add_air(const work *w, const bough_air_tangent *t, bough_state_space *to) {
-    size_t n = (size_t)t->n, m = (size_t)t->n_air, all = n + m, u = (size_t)w->n_input;
-    add_block(t->motion, n, n, to->a, all);
-    add_block(t->drive, m, n, to->a + n, all);
-    add_block(t->lift, n, m, to->a + n * all, all);
-    add_block(t->lag, m, m, to->a + n * all + n, all);
-    memset(to->b, 0, all * u * sizeof *to->b);
-    add_block(t->input, n, u, to->b, all);
-    add_block(t->input_drive, m, u, to->b + n, all);
+    size_t all = (size_t)t->all;
+    for (size_t k = 0; k < all * all; k++) to->a[k] += t->matrix[k];
+    memcpy(to->b, t->input, all * (size_t)w->n_input * sizeof *to->b);
 }
 
 // -- the whole ------------------------------------------------------------------------------------

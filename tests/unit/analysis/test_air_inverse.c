@@ -58,7 +58,8 @@ static double miss(bough_arena *arena, const scene *c, const double *z, const do
     bough_assembly_scales(c->x.whole->assembly, scale);
     bough_modes_rate(def, rate);
     for (size_t j = 0; j < n; j++) {
-        for (size_t i = 0; i < n; i++) force[i] += c->air.motion[j * n + i] * y[j] / def->point;
+        for (size_t i = 0; i < n; i++)
+            force[i] += *bough_air_tangent_entry(&c->air, i, j) * y[j] / def->point;
     }
     for (int k = 0; k < 9; k++) {
         for (int j = 0; j < def->n_row; j++)

@@ -58,32 +58,36 @@ TEST(product_of_matrices) {
     const double a[6] = {1, 2, 3, 4, 5, 6}, b[6] = {1, 0, -1, 2, 1, 0}, at[6] = {1, 3, 5, 2, 4, 6};
     const double expected[4] = {-4, -4, 5, 8};
     double c[4] = {1, 1, 1, 1};
-    bough_dense_product((bough_product){2, 2, 3, false, 1, 0}, a, b, c);
+    bough_dense_product((bough_product){2, 2, 3, false, .factor = 1}, a, b, c);
     for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
-    bough_dense_product((bough_product){2, 2, 3, true, 2, -1}, at, b, c);
+    bough_dense_product((bough_product){2, 2, 3, true, .factor = 2, .keep = -1}, at, b, c);
     for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
 }
 
-// Both products of a matrix (m × k), at a level.
+// Both products of a matrix (m × k), at a level; all are parts of matrices with two rows more.
 static void check_few(bough_level level, int m, int n, int k) {
-    enum { M = 300, K = 45, N = 9 };
+    enum { M = 302, K = 47, N = 9 };
     static double a[M * K], b[K * N], c[M * N], bt[M * N], ct[K * N];
-    for (int i = 0; i < m * k; i++) a[i] = sin(i);
-    for (int i = 0; i < k * n; i++) b[i] = cos(3 * i), ct[i] = 1;
-    for (int i = 0; i < m * n; i++) bt[i] = cos(2 * i), c[i] = 1;
-    BOUGH_OF_LEVEL(bough_multiply_few, level)(&(bough_product){m, n, k, false, 2, -3}, a, b, c);
-    BOUGH_OF_LEVEL(bough_multiply_few, level)(&(bough_product){k, n, m, true, 2, -3}, a, bt, ct);
+    int rows = m + 2, inner = k + 2;
+    for (int i = 0; i < rows * k; i++) a[i] = sin(i);
+    for (int i = 0; i < inner * n; i++) b[i] = cos(3 * i), ct[i] = 1;
+    for (int i = 0; i < rows * n; i++) bt[i] = cos(2 * i), c[i] = 1;
+    bough_product p = {m, n, k, false, 2, -3, rows, inner, rows},
+                  t = {k, n, m, true, 2, -3, rows, rows, inner};
+    BOUGH_OF_LEVEL(bough_multiply_few, level)(&p, a, b, c);
+    BOUGH_OF_LEVEL(bough_multiply_few, level)(&t, a, bt, ct);
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < m; i++) {
             double sum = -3;
-            for (int q = 0; q < k; q++) sum += 2 * a[q * m + i] * b[j * k + q];
-            check_near(c[j * m + i], sum, 0, 1e-12);
+            for (int q = 0; q < k; q++) sum += 2 * a[q * rows + i] * b[j * inner + q];
+            check_near(c[j * rows + i], sum, 0, 1e-12);
         }
         for (int q = 0; q < k; q++) {
             double sum = -3;
-            for (int i = 0; i < m; i++) sum += 2 * a[q * m + i] * bt[j * m + i];
-            check_near(ct[j * k + q], sum, 0, 1e-12);
+            for (int i = 0; i < m; i++) sum += 2 * a[q * rows + i] * bt[j * rows + i];
+            check_near(ct[j * inner + q], sum, 0, 1e-12);
         }
+        assert_true(c[j * rows + m] == 1 && ct[j * inner + k] == 1);
     }
 }
 
@@ -102,10 +106,10 @@ TEST(products_with_few_columns_are_products_at_every_level) {
 TEST(what_a_product_does_not_keep_is_not_read) {
     const double a[2] = {1, 2}, b[2] = {3, 4};
     double c[2] = {(double)NAN, (double)NAN};
-    bough_dense_product((bough_product){2, 1, 1, false, 1, 0}, a, b, c);
+    bough_dense_product((bough_product){2, 1, 1, false, .factor = 1}, a, b, c);
     assert_true(c[0] == 3 && c[1] == 6);
     c[0] = (double)NAN;
-    bough_dense_product((bough_product){1, 1, 2, true, 1, 0}, a, b, c);
+    bough_dense_product((bough_product){1, 1, 2, true, .factor = 1}, a, b, c);
     assert_true(c[0] == 11);
 }
 
@@ -118,7 +122,7 @@ TEST(no_old_kernels_on_a_new_processor) {
     assert_string_not_equal(gotoblas_corename(), "Prescott");
     const double a[4] = {1, 2, 3, 4};
     double b[4];
-    bough_dense_product((bough_product){2, 2, 2, false, 1, 0}, a, a, b);
+    bough_dense_product((bough_product){2, 2, 2, false, .factor = 1}, a, a, b);
     check_near(b[3], 22, 1e-15, 0);
 }
 
