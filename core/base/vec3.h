@@ -63,4 +63,8 @@ BOUGH_INLINE bough_mat3 bough_mat3_product(bough_mat3 a, bough_mat3 b) {
 BOUGH_INLINE bough_mat3 bough_mat3_transpose(bough_mat3 a) {
     return (bough_mat3){{a.c1.x, a.c2.x, a.c3.x}, {a.c1.y, a.c2.y, a.c3.y}, {a.c1.z, a.c2.z, a.c3.z}};
 }
+// The symmetric matrix of the entries xx yy zz xy xz yz.
+BOUGH_INLINE bough_mat3 bough_mat3_symmetric(const double *j) {
+    return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+}
 BOUGH_INLINE bough_mat3 bough_mat3_identity(void) { return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }

@@ -96,7 +96,7 @@ static void end_tangents(const tree_system *s, const double *state, const double
         double eta[BOUGH_JOINT_SPEEDS];
         bough_joint_speed(&link->joint, state + link->first_coordinate, own, eta);
         bough_twist d = s->data->acceleration[i];
-        bough_vec3 turned = bough_cross(bough_v3(eta[3], eta[4], eta[5]), s->data->twist[i].linear);
+        bough_vec3 turned = bough_cross(bough_v3_load(eta + 3), s->data->twist[i].linear);
         bough_v3_store(in_joint_axes(s, i, bough_add(d.linear, turned)), out);
         bough_v3_store(d.angular, out + 3);
         memcpy(out + 6, own, 7 * sizeof *out);

@@ -199,10 +199,9 @@ static void set_stiffening(const fields *f, int j) {
 // Inertia of a vertex about its mass centre, by Steiner, in frame axes.
 static vertex_mass mass_of(const bough_rod_model *rod, int i) {
     const bough_vertex_inertia *v = &rod->vertex[i];
-    const double *j = v->inertia;
     bough_mat3 r = bough_rotation_matrix(rod->rotation0[i]);
-    bough_mat3 about = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
     bough_vec3 zeta = bough_scale(1 / v->mass, v->moment);
+    bough_mat3 about = bough_mat3_symmetric(v->inertia);
     about = bough_mat3_add(about, bough_steiner(bough_scale(-0.5 * v->mass, zeta), zeta));
     bough_vec3 arm = bough_mat3_mul(r, zeta);
     about = bough_mat3_product(r, bough_mat3_product(about, bough_mat3_transpose(r)));

@@ -293,7 +293,7 @@ static void set_lever(bough_modal_point *at, const double *load, int stride) {
         bough_vec3 force = vertex_load(at, load, stride, i).force;
         if (i == p->n && p->inner) {
             const double *outer = at->coefficient + 9;
-            force = bough_add(force, bough_v3(outer[0], outer[1], outer[2]));
+            force = bough_add(force, bough_v3_load(outer));
         }
         add_lever(p, i, force, at->lever);
     }

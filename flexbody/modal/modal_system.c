@@ -233,7 +233,7 @@ static void solve(void *self, void *factors, double *x) {
 // The undeformed body moving rigidly with its frame.
 static void set_initial(bough_modal_body *b, const double *input) {
     const bough_modal_model *m = b->model;
-    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    bough_vec3 u0 = bough_v3_load(input), omega = bough_v3_load(input + 3);
     for (int k = 0; k < m->n_piece; k++) {
         const bough_modal_piece *p = &m->piece[k];
         double *eta = b->initial + m->offset[k] + p->m, twist[6];

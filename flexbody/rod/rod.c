@@ -101,9 +101,7 @@ void bough_vertex_mass(const bough_vertex_inertia *v, double upper[21]) {
 }
 
 static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 velocity, bough_vec3 angular) {
-    const double *j = v->inertia;
-    bough_inertia inertia = {
-        v->mass, v->moment, {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}}};
+    bough_inertia inertia = {v->mass, v->moment, bough_mat3_symmetric(v->inertia)};
     bough_twist twist = {velocity, angular};
     return bough_power(twist, bough_inertia_mul(&inertia, twist));
 }
@@ -256,7 +254,7 @@ bool bough_rod_loads_follow(const bough_rod_loads *loads) {
 
 void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state) {
     int n = m->n;
-    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    bough_vec3 u0 = bough_v3_load(input), omega = bough_v3_load(input + 3);
     for (int i = 0; i < n; i++) {
         bough_vec3 x = m->position0[i + 1];
         bough_quaternion p = m->rotation0[i + 1];

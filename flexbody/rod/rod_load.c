@@ -89,8 +89,8 @@ static const double most_bend = 0.5;
 static double bend_of(const bough_rod_model *m, int n, const double line[12]) {
     const double *c = bough_rod_tile(m->stiffness, 21, n);
     double h = m->length[n], softest = fmin(c[15 * BOUGH_LANES], c[18 * BOUGH_LANES]);
-    double mean = bough_norm(bough_v3(line[0], line[1], line[2]));
-    double slope = bough_norm(bough_v3(line[6], line[7], line[8]));
+    double mean = bough_norm(bough_v3_load(line));
+    double slope = bough_norm(bough_v3_load(line + 6));
     return (mean + 0.5 * h * slope) * h * h * h / (12 * softest);
 }
 

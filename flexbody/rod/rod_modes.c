@@ -55,8 +55,8 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
             imaginary[c] = cosine * b[c] + sine * a[c];
         }
         // rotations from section to body axes
-        bough_vec3 first = bough_mat3_mul(r, bough_v3(real[3], real[4], real[5]));
-        bough_vec3 second = bough_mat3_mul(r, bough_v3(imaginary[3], imaginary[4], imaginary[5]));
+        bough_vec3 first = bough_mat3_mul(r, bough_v3_load(real + 3));
+        bough_vec3 second = bough_mat3_mul(r, bough_v3_load(imaginary + 3));
         const double turned[6] = {first.x, first.y, first.z, second.x, second.y, second.z};
         for (int c = 0; c < 3; c++) {
             mode->real[c * n + i] = real[c];

@@ -37,8 +37,8 @@ void bough_rod_change(const bough_rod_model *m, const double *state, const doubl
 }
 
 static vertex_variation variation_of(const double *change, double factor) {
-    return (vertex_variation){.x = bough_scale(factor, bough_v3(change[0], change[1], change[2])),
-                              .phi = bough_scale(factor, bough_v3(change[3], change[4], change[5]))};
+    return (vertex_variation){.x = bough_scale(factor, bough_v3_load(change)),
+                              .phi = bough_scale(factor, bough_v3_load(change + 3))};
 }
 
 double bough_rod_turn(const bough_rod_model *m, const double *change) {
@@ -161,7 +161,7 @@ static double magnitude(const bough_rod_model *m, const bough_rod_static *w) {
 
 static bough_vec3 step_of(const double *step, int i, int from) {
     const double *d = step + (size_t)BOUGH_COLUMN * i + from;
-    return bough_v3(d[0], d[1], d[2]);
+    return bough_v3_load(d);
 }
 
 // Moves the rod by a step, shortened so that no vertex turns by more than most_turn. Returns the

@@ -29,7 +29,7 @@ void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
 // u = u₀ + ω×x and W = Rᵀω at every vertex.
 void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, double *state) {
     int n = m->n;
-    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    bough_vec3 u0 = bough_v3_load(input), omega = bough_v3_load(input + 3);
     for (int i = 0; i < n; i++) {
         bough_vec3 x = {state[i], state[n + i], state[2 * n + i]};
         bough_vec3 u = bough_add(u0, bough_cross(omega, x));

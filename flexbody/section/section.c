@@ -215,7 +215,7 @@ static bough_section_mass best_gain(segment_sum *c) {
     }
     if (!bough_cholesky_factor(UNKNOWNS, normal)) return (bough_section_mass){0};
     bough_cholesky_solve(UNKNOWNS, normal, gain);
-    return (bough_section_mass){gain[0], bough_v3(gain[1], gain[2], gain[3])};
+    return (bough_section_mass){gain[0], bough_v3_load(gain + 1)};
 }
 
 // The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at

@@ -281,9 +281,7 @@ bough_vertex_inertia bough_section_rigid(const bough_rod_def *def) {
         const bough_vertex_inertia *v = &def->inertia[i];
         bough_mat3 r = bough_rotation_matrix(def->rotation[i]);
         bough_vec3 d = def->position[i], moment = bough_mat3_mul(r, v->moment);
-        const double *j = v->inertia;
-        bough_mat3 tensor = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
-        add_rotated(sum.inertia, 1, r, tensor);
+        add_rotated(sum.inertia, 1, r, bough_mat3_symmetric(v->inertia));
         add_offsets(sum.inertia, v->mass, d, d);
         add_offsets(sum.inertia, 2, d, moment);
         sum.mass += v->mass;

@@ -22,12 +22,12 @@ static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_be
 
 bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam, bough_turning *turning) {
     const bough_scene_modes *modes = &s->scene->modes;
-    bough_vec3 axis = {modes->axis[0], modes->axis[1], modes->axis[2]};
+    bough_vec3 axis = bough_v3_load(modes->axis);
     *turning = (bough_turning){.speed = modes->speed};
     if (modes->speed == 0) return bough_ok();
     if (bough_norm(axis) > 0) {
         turning->axis = bough_scale(1 / bough_norm(axis), axis);
-        turning->centre = bough_v3(modes->centre[0], modes->centre[1], modes->centre[2]);
+        turning->centre = bough_v3_load(modes->centre);
         return bough_ok();
     }
     const bough_scene_body *pivot = pivot_of(s->scene, beam);

@@ -119,8 +119,8 @@ static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
     bough_twist v = {{in[0], in[1], in[2]}, {in[3], in[4], in[5]}},
                 fall = {{-in[6], -in[7], -in[8]}, {0, 0, 0}};
     bough_wrench vertex = bough_inertia_wrench(&rod->beam->vertex[0], fall, v);
-    result[STATIC_FORCE] = bough_sub(bough_v3(wrench[0], wrench[1], wrench[2]), vertex.force);
-    result[STATIC_MOMENT] = bough_sub(bough_v3(wrench[3], wrench[4], wrench[5]), vertex.moment);
+    result[STATIC_FORCE] = bough_sub(bough_v3_load(wrench), vertex.force);
+    result[STATIC_MOMENT] = bough_sub(bough_v3_load(wrench + 3), vertex.moment);
 }
 
 // -- a finer mesh ---------------------------------------------------------------------------------

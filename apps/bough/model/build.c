@@ -80,7 +80,7 @@ static bough_status build_tree(bough_builder *b) {
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
     bough_build_forces(b);
-    b->tree.gravity = bough_v3(scene->gravity[0], scene->gravity[1], scene->gravity[2]);
+    b->tree.gravity = bough_v3_load(scene->gravity);
     b->tree.n_bodies = scene->n_body + s->n_end;
     b->tree.n_ports = s->n_rod + s->n_fmu;
     b->tree.n_ends = s->n_end;

@@ -17,11 +17,6 @@ static bough_transform placement(const bough_scene_body *body, bough_transform x
     return x;
 }
 
-// Columns from the entries Ixx Iyy Izz Ixy Ixz Iyz.
-static bough_mat3 tensor(const double j[6]) {
-    return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
-}
-
 // The frame in which bodies hang on a beam: at its end, with the axes of the beam's body, which rotate with
 // the last section. A placement is then the same for flexible and rigid beams.
 static bough_transform beam_end(const bough_beam *beam) {
@@ -68,8 +63,8 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
 static void set_mass(const bough_scene_body *from, bough_beam *beam, bough_body_def *to) {
     if (beam == NULL) {
         to->mass = from->mass;
-        to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1], from->centre_of_mass[2]);
-        to->inertia = tensor(from->inertia);
+        to->mass_centre = bough_v3_load(from->centre_of_mass);
+        to->inertia = bough_mat3_symmetric(from->inertia);
         return;
     }
     bough_vertex_inertia whole = bough_section_rigid(&beam->def);
@@ -77,7 +72,7 @@ static void set_mass(const bough_scene_body *from, bough_beam *beam, bough_body_
     bough_mat3 steiner = bough_steiner(bough_scale(-0.5 * whole.mass, centre), centre);
     to->mass = whole.mass;
     to->mass_centre = centre;
-    to->inertia = bough_mat3_add(tensor(whole.inertia), steiner);
+    to->inertia = bough_mat3_add(bough_mat3_symmetric(whole.inertia), steiner);
     beam->vertex[0] = bough_inertia_of(to->mass, to->mass_centre, to->inertia);
 }
 
@@ -131,7 +126,7 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
 }
 
 static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {
-    return (bough_inertia){v->mass, v->moment, tensor(v->inertia)};
+    return (bough_inertia){v->mass, v->moment, bough_mat3_symmetric(v->inertia)};
 }
 
 // Inertia of the root vertex, which belongs to the carrier, in the body's frame about its origin.

@@ -17,7 +17,7 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
 // Force and moment in the axes in which the rod needs them.
 static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
                     const double *f, const double *l, double wrench[6]) {
-    bough_vec3 force = {f[0], f[1], f[2]}, moment = {l[0], l[1], l[2]};
+    bough_vec3 force = bough_v3_load(f), moment = bough_v3_load(l);
     if (load->frame == BOUGH_SCENE_LOAD_GROUND) {
         bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
         force = bough_mat3_tmul(r, force);
@@ -109,9 +109,9 @@ void bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
 
 // -- springs, bushings, closures, applied wrenches, recorded points -------------------------------
 
-static bough_vec3 point(const double x[3]) { return bough_v3(x[0], x[1], x[2]); }
-
-static bough_transform at(const double x[3]) { return (bough_transform){point(x), bough_mat3_identity()}; }
+static bough_transform at(const double x[3]) {
+    return (bough_transform){bough_v3_load(x), bough_mat3_identity()};
+}
 
 static void add_springs(bough_builder *b) {
     int n = b->tree.n_springs = b->scene->n_spring;
@@ -162,7 +162,7 @@ static void add_wrenches(bough_builder *b) {
         if (load->body_name == NULL || b->scene->body[load->body].fidelity != BOUGH_SCENE_RIGID) continue;
         applied[b->tree.n_applied++] =
             (bough_applied_def){.marker = bough_build_marker(b, load->body_name, load->body, at(load->point)),
-                                .wrench = {point(load->force), point(load->moment)},
+                                .wrench = {bough_v3_load(load->force), bough_v3_load(load->moment)},
                                 .ground = load->frame == BOUGH_SCENE_LOAD_GROUND,
                                 .schedule = bough_scene_load_schedule(load)};
     }

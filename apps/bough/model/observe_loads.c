@@ -46,7 +46,7 @@ static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *
     if (bough_symmetric6_inverse(x->loads.beam->def.stiffness + 21 * at.segment, compliance))
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) k[i] += compliance[bough_symmetric6_index(3 + i, 3 + j)] * m[j];
-    return bough_mat3_mul(*axes, bough_v3(k[0], k[1], k[2]));
+    return bough_mat3_mul(*axes, bough_v3_load(k));
 }
 
 // Between vertices displacement and rotation are parabolas, whose second derivatives follow from the slopes
@@ -164,9 +164,7 @@ static bool turns_about_rotor_axis(const bough_simulation *s, int body) {
 }
 
 static bough_inertia inertia_of(const bough_scene_body *b) {
-    const double *c = b->centre_of_mass, *v = b->inertia;
-    bough_mat3 about = {{v[0], v[3], v[4]}, {v[3], v[1], v[5]}, {v[4], v[5], v[2]}};
-    return bough_inertia_of(b->mass, bough_v3(c[0], c[1], c[2]), about);
+    return bough_inertia_of(b->mass, bough_v3_load(b->centre_of_mass), bough_mat3_symmetric(b->inertia));
 }
 
 static shaft *build_shaft(bough_arena *arena, const bough_simulation *s) {

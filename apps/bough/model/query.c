@@ -108,7 +108,7 @@ static bough_wrench inertial_wrench(const bough_simulation *s, const bough_frame
 // Adds the inertial wrench of the vertex, unless the rod is not yet strained, as at the start, when its
 // motion has not reached the vertex.
 static void add_vertex(bough_wrench inertial, double *wrench) {
-    double force = bough_norm(inertial.force), strain = bough_norm(bough_v3(wrench[0], wrench[1], wrench[2]));
+    double force = bough_norm(inertial.force), strain = bough_norm(bough_v3_load(wrench));
     double values[6];
     if (strain <= 1e-9 * force) return;
     bough_wrench_store(inertial, values);

@@ -215,10 +215,10 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     double w[BOUGH_ROD_MOST_OUTPUTS];
     bough_simulation_accelerate(s, t);
     bough_simulation_root(s, beam, t, w);
-    bough_vec3 root = bough_v3(w[0], w[1], w[2]), arm = bough_cross(beam->def.position[0], root);
-    x->root = (bough_section_load){root, bough_sub(bough_v3(w[3], w[4], w[5]), arm)};
+    bough_vec3 root = bough_v3_load(w), arm = bough_cross(beam->def.position[0], root);
+    x->root = (bough_section_load){root, bough_sub(bough_v3_load(w + 3), arm)};
     if (beam->end < 0) return finite;
-    bough_vec3 moment = bough_mat3_mul(vertex_axes(x, m->n_segment), bough_v3(w[9], w[10], w[11]));
+    bough_vec3 moment = bough_mat3_mul(vertex_axes(x, m->n_segment), bough_v3_load(w + 9));
     x->end = (bough_section_load){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
     return finite;
 }

@@ -23,7 +23,7 @@ static void rigid_line(const bough_simulation *s, int body, bough_vertex_motion 
     bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
     x[0].position = x[1].position = own.position;
     if (parent >= 0) x[0].position = bough_tree_frame_pose(s->view, &s->tree->bodies[parent]).position;
-    x[2].position = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3(c[0], c[1], c[2])));
+    x[2].position = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3_load(c)));
 }
 
 void bough_shape_points(void *self, double *point) {
