@@ -25,23 +25,28 @@ static int conclude(bough_session *s, bough_status status) {
     return s->code;
 }
 
-// Whether a step has failed, after which the state is undefined.
-static bool failed(const bough_session *s) { return !bough_is_ok(&s->run.outcome); }
+#define REFUSE(s, ...) conclude(s, bough_fail(BOUGH_INVALID, __VA_ARGS__))
 
 static bool is_open(const bough_session *s) { return s && s->open; }
 
-// The failure of a call that needs a scene, without one.
-static int conclude_closed(bough_session *s, const char *call) {
-    if (!s) return BOUGH_SESSION_OTHER;
+// Whether a call has the scene that it needs; otherwise the session has its failure.
+static bool has_scene(bough_session *s, const char *call) {
+    if (!s || s->open) return s != NULL;
     snprintf(s->error, sizeof s->error, "%s: the scene could not be opened", call);
-    return s->code = s->opening;
+    s->code = s->opening;
+    return false;
 }
 
-static int conclude_failed(bough_session *s, const char *call) {
-    return conclude(
-        s, bough_fail(BOUGH_FAILED,
-                      "%s: a step has failed, and the session can only be restored or closed: %.300s", call,
-                      s->run.outcome.message));
+// The same of a call that needs its state, which is undefined after a step has failed.
+static bool has_state(bough_session *s, const char *call) {
+    if (!has_scene(s, call)) return false;
+    bool good = bough_is_ok(&s->run.outcome);
+    if (!good)
+        conclude(s,
+                 bough_fail(BOUGH_FAILED,
+                            "%s: a step has failed, and the session can only be restored or closed: %.300s",
+                            call, s->run.outcome.message));
+    return good;
 }
 
 // All errors of the scene, a line each; as many as there is room for.
@@ -107,9 +112,8 @@ static bough_status check_copy(const bough_session *s, const void *copy) {
 size_t bough_session_size(const bough_session *s) { return s ? s->size : 0; }
 
 int bough_session_save(bough_session *s, void *copy) {
-    if (!is_open(s)) return conclude_closed(s, "save");
-    if (failed(s)) return conclude_failed(s, "save");
-    if (!copy) return conclude(s, bough_fail(BOUGH_INVALID, "save: no memory is given for the copy (NULL)"));
+    if (!has_state(s, "save")) return bough_session_code(s);
+    if (!copy) return REFUSE(s, "save: no memory is given for the copy (NULL)");
     bough_status status = bough_run_storable(&s->run);
     if (!bough_is_ok(&status)) return conclude(s, status);
     bough_session_values(s);
@@ -118,7 +122,7 @@ int bough_session_save(bough_session *s, void *copy) {
 }
 
 int bough_session_restore(bough_session *s, const void *copy) {
-    if (!is_open(s)) return conclude_closed(s, "restore");
+    if (!has_scene(s, "restore")) return bough_session_code(s);
     bough_status status = check_copy(s, copy);
     if (!bough_is_ok(&status)) return conclude(s, status);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)copy, 0});
@@ -199,8 +203,8 @@ const char *bough_session_warning(const bough_session *s) {
 }
 
 int bough_session_step(bough_session *s) {
-    if (!is_open(s)) return conclude_closed(s, "step");
-    if (failed(s)) return conclude(s, s->run.outcome);
+    if (!has_scene(s, "step")) return bough_session_code(s);
+    if (!bough_is_ok(&s->run.outcome)) return conclude(s, s->run.outcome);
     if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
     return conclude(s, bough_run_step(&s->run));
 }
@@ -238,14 +242,10 @@ static int find_name(bough_session *s, const char *what, const char *name, int n
     for (int k = 0; k < n; k++) {
         if (strcmp(name_of(s, k), shown) == 0) return k;
     }
-    if (!is_open(s)) {
-        conclude_closed(s, what);
-        return -1;
-    }
+    if (!has_scene(s, what)) return -1;
     const char **names = malloc((size_t)(n + 1) * sizeof *names);
     for (int k = 0; k < n && names; k++) names[k] = name_of(s, k);
-    conclude(s, bough_fail(BOUGH_INVALID, "the scene has no %s '%.80s'%s", what, shown,
-                           bough_suggest(shown, names, names ? n : 0).text));
+    REFUSE(s, "the scene has no %s '%.80s'%s", what, shown, bough_suggest(shown, names, names ? n : 0).text);
     free(names);
     return -1;
 }
@@ -286,11 +286,9 @@ int bough_session_stations(const bough_session *s, int body) {
 }
 
 int bough_session_poses(bough_session *s, int body, double *position, double *rotation) {
-    if (!is_open(s)) return conclude_closed(s, "poses");
-    if (failed(s)) return conclude_failed(s, "poses");
+    if (!has_state(s, "poses")) return bough_session_code(s);
     if (!is_body(s, body) || !position || !rotation)
-        return conclude(
-            s, bough_fail(BOUGH_INVALID, "poses: no body of index %d, or no memory is given (NULL)", body));
+        return REFUSE(s, "poses: no body of index %d, or no memory is given (NULL)", body);
     bough_simulation *x = s->run.simulation;
     const bough_beam *beam = bough_simulation_beam(x, body);
     bough_simulation_update(x);
@@ -338,11 +336,10 @@ const char *bough_session_input_unit(const bough_session *s, int input) {
 
 int bough_session_input(bough_session *s, const char *name) {
     if (is_open(s) && bough_session_inputs(s) == 0) {
-        conclude(s,
-                 bough_fail(BOUGH_INVALID,
-                            "the scene has no input '%.80s': it declares none, as 'input: NAME' of a load or "
-                            "of the wind does",
-                            name ? name : ""));
+        REFUSE(s,
+               "the scene has no input '%.80s': it declares none, as 'input: NAME' of a load or of the wind "
+               "does",
+               name ? name : "");
         return -1;
     }
     return find_name(s, "input", name, bough_session_inputs(s), bough_session_input_name);
@@ -353,22 +350,15 @@ double bough_session_input_value(const bough_session *s, int input) {
 }
 
 int bough_session_set(bough_session *s, int input, double value) {
-    if (!is_open(s)) return conclude_closed(s, "set");
-    if (failed(s)) return conclude_failed(s, "set");
-    if (!is_input(s, input)) {
-        return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d: it has %d", input,
-                                      bough_session_inputs(s)));
-    }
+    if (!has_state(s, "set")) return bough_session_code(s);
+    if (!is_input(s, input))
+        return REFUSE(s, "the scene has no input of index %d: it has %d", input, bough_session_inputs(s));
+    const char *name = bough_session_input_name(s, input);
     const char *range = input_at(s, input)->range; // what the scene's keys allow of the same quantity
-    if (!isfinite(value)) {
-        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
-                                      bough_session_input_name(s, input), value));
-    }
-    if (!bough_in_range(value, range)) {
-        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: must be %s%s %s, got %g",
-                                      bough_session_input_name(s, input), range[0] == '[' ? "in " : "", range,
-                                      bough_session_input_unit(s, input), value));
-    }
+    if (!isfinite(value)) return REFUSE(s, "input %s: expected a finite number, got %g", name, value);
+    if (!bough_in_range(value, range))
+        return REFUSE(s, "input %s: must be %s%s %s, got %g", name, range[0] == '[' ? "in " : "", range,
+                      bough_session_input_unit(s, input), value);
     s->run.simulation->input[input] = value;
     return conclude(s, bough_ok());
 }
@@ -380,11 +370,10 @@ int bough_session_set_text(bough_session *s, int input, const char *text) {
     locale_t callers = bough_c_locale();
     bool good = !is_input(s, input) || bough_quantity(text, input_dimension(s, input), &value, why);
     uselocale(callers);
-    if (!good) {
-        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
-                                      bough_session_input_name(s, input), bough_session_input_unit(s, input),
-                                      text, why[0] ? ": " : "", why));
-    }
+    if (!good)
+        return REFUSE(s, "input %s: expected a value in %s, got '%.80s'%s%s",
+                      bough_session_input_name(s, input), bough_session_input_unit(s, input), text,
+                      why[0] ? ": " : "", why);
     return bough_session_set(s, input, value);
 }
 
