@@ -421,17 +421,19 @@ static const char *between(bough_arena *arena, const char *a, const char *b, dou
     return *b == '\0' ? value : NULL;
 }
 
-// The growth at a place.
-typedef struct growth_at {
+// The growth at a place between two points, or at the boundary.
+typedef struct growth {
+    double part;      // of the way from the first point to the next
     double rate;      // of the fastest growing motion [1/s]; 0: rounding
     double frequency; // of that, damped [Hz]; 0: a divergence
     const char *name; // what moves in it
+    double slope;     // at the boundary: of the rate over that part [1/s]
     double ratio;     // with the other mesh: the error of the scene's mesh over the difference of the two
-} growth_at;
+} growth;
 
-// Growth at a place behind the point, with the scene's mesh or the other one.
+// Growth at a part of the way behind the point, with the scene's mesh or the other one.
 static bough_status grow(bough_arena *keep, const bough_options *options, const sweep *s, int point,
-                         double part, bool other, growth_at *to) {
+                         double part, bool other, growth *to) {
     bough_arena *arena = bough_arena_child(keep);
     sweep one = {.n_key = s->n_key, .n_point = 1, .key = s->key};
     one.value = bough_arena_take(arena, (size_t)s->n_key * sizeof *one.value);
@@ -447,7 +449,7 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     bough_simulation *sim;
     bough_vibration v;
     bough_status status = bough_open_scene(arena, &at, &scene);
-    *to = (growth_at){.rate = -HUGE_VAL};
+    *to = (growth){.part = part, .rate = -HUGE_VAL};
     if (bough_is_ok(&status) && other) {
         bough_scene *coarser = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
         to->ratio = bough_coarser_ratio(scene, coarser);
@@ -467,24 +469,16 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     return status;
 }
 
-typedef struct boundary {
-    double part;      // of the way from the point before it to the next
-    double slope;     // of the growth over that part [1/s]
-    double frequency; // as in growth_at, behind it
-    const char *name;
-    double ratio;
-} boundary;
-
 // Between a stable point and the next one, where growths are low and high, by the Illinois rule; in halves
 // where low is 0: without damping, up to the boundary, and before a divergence, of which nothing is listed.
 static bough_status find_boundary(bough_arena *arena, const bough_options *options, const sweep *s, int point,
-                                  double low, double high, bool other, boundary *to) {
+                                  double low, double high, bool other, growth *to) {
     double a = 0, b = 1, first = s->x[point], second = s->x[point + 1];
     double width = accurate * fmax(fabs(first), fabs(second)) / fabs(second - first);
     for (int trial = 0; trial < MOST_TRIALS && b - a > width; trial++) {
         bool halves = trial % 4 == 3 || !(low < 0);
         double x = halves ? (a + b) / 2 : a + (b - a) * low / (low - high);
-        growth_at at;
+        growth at;
         x = fmin(fmax(x, a + width / 4), b - width / 4);
         BOUGH_TRY(grow(arena, options, s, point, x, other, &at));
         to->slope = (at.rate - (at.rate > 0 ? low : high)) / (x - (at.rate > 0 ? a : b));
@@ -502,14 +496,13 @@ static bough_status find_boundary(bough_arena *arena, const bough_options *optio
 // Change of the boundary by the mesh, as a fraction of the interval: by the growth with the other mesh there
 // and the slope, or, if growth starts with a jump, by its own boundary.
 static bough_status find_error(bough_arena *arena, const bough_options *options, const sweep *s, int point,
-                               double low, double high, const boundary *at, double *error) {
-    growth_at other;
-    boundary of_other = {0};
+                               double low, double high, const growth *at, double *error) {
+    growth other;
     BOUGH_TRY(grow(arena, options, s, point, at->part, true, &other));
     *error = fabs(other.ratio * other.rate / at->slope);
     if (low < 0) return bough_ok();
-    BOUGH_TRY(find_boundary(arena, options, s, point, low, high, true, &of_other));
-    *error = fabs(of_other.ratio * (of_other.part - at->part));
+    BOUGH_TRY(find_boundary(arena, options, s, point, low, high, true, &other));
+    *error = fabs(other.ratio * (other.part - at->part));
     return bough_ok();
 }
 
@@ -524,7 +517,7 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
                s->key[0], s->value[last]);
         return bough_ok();
     }
-    boundary at = {.frequency = m->damped, .name = bough_arena_print(arena, "%s %s", m->body, m->shape)};
+    growth at = {.frequency = m->damped, .name = bough_arena_print(arena, "%s %s", m->body, m->shape)};
     double low = m->damped > 0 && before ? growth_of(before) : 0, high = growth_of(m), error;
     BOUGH_TRY(find_boundary(arena, options, s, last - 1, low, high, false, &at));
     BOUGH_TRY(find_error(arena, options, s, last - 1, low, high, &at, &error));

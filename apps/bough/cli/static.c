@@ -28,8 +28,11 @@ enum {
     STATIC_RESULTS,
 };
 
+// The error of the mesh of an equilibrium.
 typedef struct mesh_error {
+    const equilibrium *of;
     char unknown[BOUGH_MESSAGE + 40]; // reason why it is not known; "": it is known
+    double *rod;                      // (n × STATIC_RESULTS) norms
     double *largest;                  // (channels.count) of each channel, in its unit
 } mesh_error;
 
@@ -127,24 +130,19 @@ static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
 
 static const double fraction = 16.0 / 15; // of the difference to four times the segments, at order 2
 
-typedef struct comparison {
-    equilibrium *coarse;
-    mesh_error *mesh;
-    double *error; // (n × STATIC_RESULTS)
-} comparison;
-
-static void compare(const comparison *c, equilibrium *fine) {
+static void compare(const mesh_error *c, equilibrium *fine) {
+    const equilibrium *coarse = c->of;
     bough_vec3 here[STATIC_RESULTS], there[STATIC_RESULTS];
     for (int k = 0; k < fine->n; k++) {
-        find_results(&c->coarse->rod[k], here);
+        find_results(&coarse->rod[k], here);
         find_results(&fine->rod[k], there);
         for (int i = 0; i < STATIC_RESULTS; i++) {
-            c->error[STATIC_RESULTS * k + i] = fraction * bough_norm(bough_sub(here[i], there[i]));
+            c->rod[STATIC_RESULTS * k + i] = fraction * bough_norm(bough_sub(here[i], there[i]));
         }
     }
-    bool channels = !fine->independent && !c->coarse->independent;
+    bool channels = !fine->independent && !coarse->independent;
     for (int i = 0; channels && i < fine->simulation->n_motion_channel; i++) {
-        c->mesh->largest[i] = fraction * fabs(c->coarse->value[i] - fine->value[i]);
+        c->largest[i] = fraction * fabs(coarse->value[i] - fine->value[i]);
     }
 }
 
@@ -171,31 +169,28 @@ static bool refine(bough_scene *scene, mesh_error *mesh) {
 }
 
 static bough_status find_finer(bough_arena *arena, void *self) {
-    const comparison *c = self;
-    bough_scene *scene = bough_coarser_scene(arena, c->coarse->simulation->scene, 0);
+    mesh_error *c = self;
+    bough_scene *scene = bough_coarser_scene(arena, c->of->simulation->scene, 0);
     bough_simulation *s;
     equilibrium fine;
-    if (!refine(scene, c->mesh)) return bough_ok();
+    if (!refine(scene, c)) return bough_ok();
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     // start from the equilibrium found, since there may be several
-    bough_simulation_take_shape(c->coarse->simulation, s);
-    BOUGH_TRY(find_equilibrium(arena, s, c->coarse, &fine));
+    bough_simulation_take_shape(c->of->simulation, s);
+    BOUGH_TRY(find_equilibrium(arena, s, c->of, &fine));
     compare(c, &fine);
     return bough_ok();
 }
 
-// Error of the mesh, by the difference to four times the segments. Returns norms for each rod (n ×
-// STATIC_RESULTS), in the arena; mesh->largest has the errors of the channels. If they are not known,
-// mesh->unknown has the reason.
-static double *find_mesh_error(bough_arena *arena, equilibrium *x, mesh_error *mesh) {
-    *mesh = (mesh_error){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
-    comparison c = {x, mesh, bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1))};
-    bough_status status = bough_arena_use(find_finer, &c);
-    if (!bough_is_ok(&status)) {
+// By the difference to four times the segments.
+static void find_mesh_error(bough_arena *arena, const equilibrium *x, mesh_error *mesh) {
+    *mesh = (mesh_error){.of = x,
+                         .rod = bough_arena_doubles(arena, STATIC_RESULTS * ((size_t)x->n + 1)),
+                         .largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
+    bough_status status = bough_arena_use(find_finer, mesh);
+    if (!bough_is_ok(&status))
         snprintf(mesh->unknown, sizeof mesh->unknown, "with %d times the segments: %s", TIMES,
                  status.message);
-    }
-    return c.error;
 }
 
 // -- tables of a rod: displacements of its vertices, loads in the middle of its segments ------------
@@ -447,11 +442,11 @@ static bough_status find(bough_arena *arena, const void *given) {
     bough_status stability = find_growth(arena, &x);
     seek_stable(arena, &x);
     warn_of_growth(&stability, &x.growth);
-    const double *error = find_mesh_error(arena, &x, &mesh);
+    find_mesh_error(arena, &x, &mesh);
     if (!x.independent) print_whole(&x);
     for (int k = 0; k < x.n; k++) {
         print_rod(&x.rod[k]);
-        const double *e = error + STATIC_RESULTS * k;
+        const double *e = mesh.rod + STATIC_RESULTS * k;
         if (mesh.unknown[0] == '\0')
             printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n",
                    x.rod[k].model->name, e[STATIC_DISPLACEMENT], e[STATIC_ROTATION] / BOUGH_DEGREE,
