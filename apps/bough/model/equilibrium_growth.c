@@ -42,18 +42,14 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
 }
 
 // The state with the largest amplitude relative to its scale.
-static int largest_row(const bough_equilibrium_search *x, const bough_eigen_pair *pair) {
-    const bough_assembly *a = x->assembly;
+static int largest_row(bough_arena *arena, const bough_equilibrium_search *x, const bough_eigen_pair *pair) {
+    double largest = 0, *scale = bough_arena_doubles(arena, (size_t)x->assembly->n_state);
     int row = 0;
-    double largest = 0;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *system = &a->member[i]->system;
-        int first = a->state_offset[i];
-        for (int k = 0; k < system->n_state; k++) {
-            double size = hypot(pair->shape_real[first + k], pair->shape_imag[first + k]) / system->scale[k];
-            if (size > largest) row = first + k;
-            largest = fmax(largest, size);
-        }
+    bough_assembly_scales(x->assembly, scale);
+    for (int k = 0; k < x->assembly->n_state; k++) {
+        double size = hypot(pair->shape_real[k], pair->shape_imag[k]) / scale[k];
+        if (size > largest) row = k;
+        largest = fmax(largest, size);
     }
     return row;
 }
@@ -147,12 +143,12 @@ static bough_status find_growth(bough_arena *arena, void *self) {
             if (!grows || pair[k].real <= x->growth->rate || is_twist_of_mesh(arena, x, &pair[k])) continue;
             if (!is_confirmed(arena, x, beside * pair[k].real * x->unit.period, 4, &pair[k])) continue;
             x->growth->rate = pair[k].real;
-            x->growth->row = largest_row(x, &pair[k]);
+            x->growth->row = largest_row(arena, x, &pair[k]);
         }
         const bough_eigen_pair *found = growing_oscillation(pair, count.found, x->unit.period);
         if (i > 0 || found == NULL || bough_equilibrium_search_turns(x)) continue;
         if (!is_confirmed(arena, x, again, NEAREST, found)) continue;
-        if (found->real > x->growth->rate) x->growth->row = largest_row(x, found);
+        if (found->real > x->growth->rate) x->growth->row = largest_row(arena, x, found);
         x->growth->oscillation = found->real;
         x->growth->frequency = fabs(found->imaginary) / (2 * BOUGH_PI);
     }

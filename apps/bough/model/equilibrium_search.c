@@ -122,18 +122,6 @@ static bough_status explain(bough_arena *arena, const bough_simulation *s, const
 
 // -- the search -----------------------------------------------------------------------------------
 
-static double change_of(const bough_assembly *assembly, const double *a, const double *b) {
-    double change = 0;
-    for (int i = 0; i < assembly->n_member; i++) {
-        int first = assembly->state_offset[i];
-        for (int k = 0; k < assembly->member[i]->system.n_state; k++) {
-            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->system.scale[k];
-            change = fmax(change, size);
-        }
-    }
-    return change;
-}
-
 bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibrium_search *x,
                                               bough_equilibrium_def *def) {
     bough_simulation *s = x->simulation;
@@ -151,13 +139,16 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
 static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search *x,
                                    bough_equilibrium_def *def) {
     size_t n = (size_t)x->assembly->n_state;
-    double *before = bough_arena_doubles(arena, n), change = 0;
+    double *before, *scale, change = 0;
+    bough_arena_each(arena, n, &before, &scale);
+    bough_assembly_scales(x->assembly, scale);
     while (x->work->samples < SAMPLES) {
         memcpy(before, x->state, n * sizeof *before);
         bough_aero_link_hold(x->simulation->aero, def->time);
         x->work->samples++;
         BOUGH_TRY(bough_equilibrium_search_balance(arena, x, def));
-        change = change_of(x->assembly, x->state, before);
+        change = 0;
+        for (size_t k = 0; k < n; k++) change = fmax(change, fabs(x->state[k] - before[k]) / scale[k]);
         if (change < still) return bough_ok();
     }
     return bough_fail(BOUGH_FAILED,
