@@ -69,11 +69,8 @@ const bough_node *bough_entry_need(bough_draft *d, const bough_node *from, const
 }
 
 const bough_node *bough_entry_named(const bough_node *list, const char *name) {
-    for (int i = 0; list && list->kind == BOUGH_SEQUENCE && i < list->n; i++) {
-        const bough_node *own = bough_node_find(list->value[i], "name");
-        if (own && own->kind == BOUGH_SCALAR && strcmp(own->text, name) == 0) return list->value[i];
-    }
-    return NULL;
+    int i = list && list->kind == BOUGH_SEQUENCE ? bough_node_index(list, name) : -1;
+    return i < 0 ? NULL : list->value[i];
 }
 
 // -- values ---------------------------------------------------------------------------------------

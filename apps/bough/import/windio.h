@@ -3,7 +3,7 @@
 // of the scene and of the list.
 #pragma once
 
-#include "apps/bough/config/text.h"
+#include "apps/bough/config/base.h"
 #include "apps/bough/import/draft.h"
 #include "apps/bough/import/import.h"
 

@@ -356,9 +356,7 @@ static void read_layer(parts *p, const bough_node *node, layer *l) {
         l->angle = bough_entry_curve(d, node, "fiber_orientation");
     const bough_node *web = bough_entry(node, "web");
     if (!web || web->kind != BOUGH_SCALAR) return;
-    const bough_node *own = bough_entry_named(p->webs, web->text);
-    for (int i = 0; own && i < p->webs->n; i++)
-        if (p->webs->value[i] == own) l->web = i;
+    if (bough_entry_named(p->webs, web->text)) l->web = bough_node_index(p->webs, web->text);
     if (l->web < 0) bough_entry_fail(d, web, "web: no web is named '%.60s'", web->text);
 }
 
