@@ -187,8 +187,8 @@ static void print_load(const bough_scene *scene, const bough_scene_load *load) {
     } else {
         bool along = load->place == BOUGH_SCENE_ALONG;
         printf("load on %s: %s axes", load->body_name, frames[load->frame]);
-        print_vector(load->force, along ? "N/m" : "N");
-        print_vector(load->moment, along ? "N m/m" : "N m");
+        print_vector(load->wrench, along ? "N/m" : "N");
+        print_vector(load->wrench + 3, along ? "N m/m" : "N m");
         if (load->n_time > 0 && input == NULL) printf(", by a table over time");
     }
     if (load->ramp[1] > 0) printf(", ramp from %.6g to %.6g s", load->ramp[0], load->ramp[1]);

@@ -46,9 +46,8 @@ static double find_mass(const bough_simulation *s) {
     return mass;
 }
 
-static double size_of(const double force[3], const double moment[3], double length) {
-    return hypot(force[0], hypot(force[1], force[2])) +
-           hypot(moment[0], hypot(moment[1], moment[2])) / length;
+static double size_of(const double w[6], double length) {
+    return hypot(w[0], hypot(w[1], w[2])) + hypot(w[3], hypot(w[4], w[5])) / length;
 }
 
 static double largest_value(const bough_scene_load *load, double otherwise) {
@@ -63,9 +62,9 @@ static double load_of(const bough_simulation *s, const bough_scene_load *load, d
         bool turns = s->scene->body[load->joint].joint.kind == BOUGH_JOINT_REVOLUTE;
         return fabs(largest_value(load, load->amount)) / (turns ? length : 1);
     }
-    double size = size_of(load->force, load->moment, length), factor = largest_value(load, 1);
+    double size = size_of(load->wrench, length), factor = largest_value(load, 1);
     if (load->place != BOUGH_SCENE_ALONG) return factor * size;
-    double end = size_of(load->end_force, load->end_moment, length);
+    double end = size_of(load->end, length);
     return factor * (size + end) / 2 * (load->span[1] - load->span[0]);
 }
 

@@ -16,23 +16,20 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
 
 // Force and moment in the axes in which the rod needs them.
 static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
-                    const double *f, const double *l, double wrench[6]) {
-    bough_vec3 force = bough_v3_load(f), moment = bough_v3_load(l);
+                    const double given[6], double wrench[6]) {
+    bough_wrench w = bough_wrench_load(given);
     if (load->frame == BOUGH_SCENE_LOAD_GROUND) {
         bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
-        force = bough_mat3_tmul(r, force);
-        moment = bough_mat3_tmul(r, moment);
+        w = (bough_wrench){bough_mat3_tmul(r, w.force), bough_mat3_tmul(r, w.moment)};
     }
-    bough_wrench_store((bough_wrench){force, moment}, wrench);
+    bough_wrench_store(w, wrench);
 }
 
 static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_scene_load *load) {
     bough_ground_load_def def = {.reach = reach_of(load, beam->mesh),
                                  .schedule = bough_scene_load_schedule(load)};
-    for (int c = 0; c < 3; c++) {
-        def.wrench[c] = load->force[c], def.wrench[3 + c] = load->moment[c];
-        def.end[c] = load->end_force[c], def.end[3 + c] = load->end_moment[c];
-    }
+    memcpy(def.wrench, load->wrench, sizeof def.wrench);
+    memcpy(def.end, load->end, sizeof def.end);
     bough_ground_body_load(beam->ground, arena, &def);
 }
 
@@ -43,8 +40,8 @@ static void add(bough_arena *arena, const bough_simulation *s, const bough_beam 
     bough_schedule schedule = bough_scene_load_schedule(load);
     bough_rod_ramped_load *to = bough_rod_loads_ramped(beam->loads, arena, m, follower, &schedule);
     double wrench[6], end[6];
-    resolve(s, beam, load, load->force, load->moment, wrench);
-    resolve(s, beam, load, load->end_force, load->end_moment, end);
+    resolve(s, beam, load, load->wrench, wrench);
+    resolve(s, beam, load, load->end, end);
     bool tapered = memcmp(wrench, end, sizeof end) != 0;
     bough_rod_lump(m, reach_of(load, m), wrench, tapered ? end : NULL, to);
     if (beam->modal != NULL) bough_rod_lump_line(m, to);
@@ -162,7 +159,7 @@ static void add_wrenches(bough_builder *b) {
         if (load->body_name == NULL || b->scene->body[load->body].fidelity != BOUGH_SCENE_RIGID) continue;
         applied[b->tree.n_applied++] =
             (bough_applied_def){.marker = bough_build_marker(b, load->body_name, load->body, at(load->point)),
-                                .wrench = {bough_v3_load(load->force), bough_v3_load(load->moment)},
+                                .wrench = bough_wrench_load(load->wrench),
                                 .ground = load->frame == BOUGH_SCENE_LOAD_GROUND,
                                 .schedule = bough_scene_load_schedule(load)};
     }

@@ -300,13 +300,12 @@ typedef struct bough_scene_load {
     int place;              // bough_scene_load_place
     int vertex;             // AT_VERTEX: 0 is the root
     double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
-    double force[3];        // [N]; ALONG: [N/m]
-    double moment[3];       // [N m]; ALONG: [N m/m]
-    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; by default as above
-    int frame;                          // bough_scene_load_frame
-    double ramp[2];                     // [s]
-    const char *input;                  // name of its input; NULL: none
-    double point[3];                    // on a rigid body: in its frame [m]
+    double wrench[6];       // force [N], moment [N m]; ALONG: [N/m], [N m/m]
+    double end[6];          // ALONG: at span[1], linear between; by default as above
+    int frame;              // bough_scene_load_frame
+    double ramp[2];         // [s]
+    const char *input;      // name of its input; NULL: none
+    double point[3];        // on a rigid body: in its frame [m]
 } bough_scene_load;
 
 // The factor of a load over time; the table stays the scene's.

@@ -33,14 +33,12 @@ static void add_joint_load(bough_arena *arena, bough_scene *s, int k) {
 static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_load *from, int k, int c) {
     static const char *const ends[] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
     bool along = from->place == BOUGH_SCENE_ALONG, force = c < 3;
-    double value = force ? from->force[c] : from->moment[c - 3];
+    double value = from->wrench[c];
     bough_scene_load *to = &s->load[k];
     *to = *from;
-    memset(to->force, 0, sizeof to->force);
-    memset(to->moment, 0, sizeof to->moment);
-    *(force ? &to->force[c] : &to->moment[c - 3]) = 1;
-    memcpy(to->end_force, to->force, sizeof to->force);
-    memcpy(to->end_moment, to->moment, sizeof to->moment);
+    memset(to->wrench, 0, sizeof to->wrench);
+    to->wrench[c] = 1;
+    memcpy(to->end, to->wrench, sizeof to->end);
     to->input = bough_arena_print(arena, "%.120s%s", from->input, ends[c]);
     bough_scene_input *input = add(s, from->node, to->input, BOUGH_INPUT_LOAD);
     input->dimension =

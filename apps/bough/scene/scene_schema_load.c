@@ -53,13 +53,13 @@ static void read_load_force(bough_schema_reader *r, const bough_node *node, void
     if (bough_node_find(load->node, "body") == NULL) {
         read_load_amount(r, node, load);
     } else {
-        read_three(r, node, is_spread(load) ? BOUGH_LINE_FORCE : BOUGH_FORCE, load->force);
+        read_three(r, node, is_spread(load) ? BOUGH_LINE_FORCE : BOUGH_FORCE, load->wrench);
     }
 }
 
 static void read_load_moment(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_load *load = field;
-    read_three(r, node, is_spread(load) ? BOUGH_LINE_MOMENT : BOUGH_MOMENT, load->moment);
+    read_three(r, node, is_spread(load) ? BOUGH_LINE_MOMENT : BOUGH_MOMENT, load->wrench + 3);
 }
 
 // -- checks within a load -------------------------------------------------------------------------
@@ -82,12 +82,9 @@ static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
 // Values at the end are by default those at the start.
 static void read_ends(bough_schema_reader *r, bough_scene_load *load) {
     if (!is_spread(load)) bough_scene_refuse(r, load->node, "end_force|end_moment", "only used with 'along'");
-    if (bough_node_find(load->node, "end_force") == NULL) {
-        memcpy(load->end_force, load->force, sizeof load->force);
-    }
-    if (bough_node_find(load->node, "end_moment") == NULL) {
-        memcpy(load->end_moment, load->moment, sizeof load->moment);
-    }
+    for (int c = 0; c < 6; c++)
+        if (bough_node_find(load->node, c < 3 ? "end_force" : "end_moment") == NULL)
+            load->end[c] = load->wrench[c];
 }
 
 static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
@@ -205,11 +202,11 @@ const bough_schema bough_scene_load_schema = {.name = "a load", .check = check_l
     {NAMED("moment", CUSTOM), .read = read_load_moment,
      .form = "3 numbers in N m, in N m/m with 'along'", .example = "[0, 0, 5 kN m]",
      .help = "on the body"},
-    {KEY(VECTOR, end_force), .count = 3, UNIT(LINE_FORCE), .fallback = ZERO3,
+    {NAMED("end_force", VECTOR), AT(end), .count = 3, UNIT(LINE_FORCE), .fallback = ZERO3,
      .example = "[2 kN/m, 0, 0]",
      .help = "with 'along': force at the end of the range, if it differs from 'force' at the "
              "start; linear between"},
-    {KEY(VECTOR, end_moment), .count = 3, UNIT(LINE_MOMENT), .fallback = ZERO3,
+    {NAMED("end_moment", VECTOR), AT(end[3]), .count = 3, UNIT(LINE_MOMENT), .fallback = ZERO3,
      .example = "[0, 0, 100]",
      .help = "with 'along': moment at the end of the range, if it differs from 'moment' at the "
              "start; linear between"},

@@ -72,17 +72,17 @@ TEST(loads_act_on_rods) {
     const bough_scene_load *load = f.scene->load;
     assert_int_equal(load[0].place, BOUGH_SCENE_AT_TIP);
     assert_int_equal(load[0].body, 1);
-    check_near(load[0].force[0], 1000, 1e-15, 0);
+    check_near(load[0].wrench[0], 1000, 1e-15, 0);
     assert_int_equal(load[1].place, BOUGH_SCENE_AT_VERTEX);
     assert_int_equal(load[1].vertex, 3);
     assert_int_equal(load[1].frame, BOUGH_SCENE_LOAD_FOLLOWER);
-    check_near(load[1].moment[2], 2000, 1e-15, 0);
+    check_near(load[1].wrench[5], 2000, 1e-15, 0);
     assert_int_equal(load[2].place, BOUGH_SCENE_AT_SPAN);
     check_near(load[2].span[0], 1.5, 1e-15, 0);
     check_near(load[2].ramp[1], 1, 0, 0);
     assert_int_equal(load[3].place, BOUGH_SCENE_ALONG);
-    check_near(load[3].force[1], 3000, 1e-15, 0);
-    check_near(load[3].moment[2], 3, 1e-15, 0);
+    check_near(load[3].wrench[1], 3000, 1e-15, 0);
+    check_near(load[3].wrench[5], 3, 1e-15, 0);
 }
 
 TEST(loads_fit_their_rods) {
