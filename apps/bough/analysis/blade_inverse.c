@@ -1,4 +1,4 @@
-// theory (116). The blades' states are in harmonics wherever they are not said to be of blade after blade.
+// theory (116). The blades' states are harmonics unless a comment says that they are of blade after blade.
 #include "apps/bough/analysis/air_inverse.h"
 
 #include "core/base/linalg.h"
@@ -183,7 +183,7 @@ void bough_blade_inverse_force(const bough_blade_inverse *x, bool transposed, in
 
 // -- factors --------------------------------------------------------------------------------------
 
-// The mean of the blades' P, which their loads make differ, all other members at rest.
+// The mean of the blades' P, which differ with their loads, with all other members at rest.
 static alone find_alone(bough_arena *arena, const bough_blade_inverse *x) {
     int r = x->r, n = x->n_vertex;
     alone b = {.dynamic = bough_arena_doubles(arena, (size_t)(x->d * r)),

@@ -29,7 +29,7 @@ typedef struct side {
 // -- vectors on the other mesh --------------------------------------------------------------------
 
 // States of a rod are linear between its moving vertices, and beyond the first and the last of them; those of
-// a left vector are a share of each vertex' mass.
+// a left vector are proportional to each vertex's mass.
 static void carry_rod(const bough_rod_model *from, const bough_rod_model *to, bool left, const double *x,
                       double *y) {
     for (int i = 0; i < to->n; i++) {

@@ -258,7 +258,8 @@ static void set_shares(const mode_shape *x, bough_scene_mode *mode) {
 
 enum { BENDING = 6 };
 
-// The square root of its inertia times displacement c < 3 or turn of a vertex against the body.
+// Displacement (c < 3) or rotation of a vertex relative to the body, times the square root of its mass or
+// inertia.
 static double bending(const mode_shape *x, const bough_beam *beam, int part, int i, int c) {
     const bough_rod_model *m = beam->mesh;
     int n = m->n;

@@ -23,6 +23,6 @@ typedef struct bough_state_space {
 
 // About the state in which the simulation is, at `time`; it is left in it. Inputs: the loads that the scene
 // names as inputs, torque of the generator and collective pitch where it has a controller, and the speed of a
-// wind by a formula where the air follows (modes.air). A change of pitch is a turn at rest.
+// wind by a formula where the air follows (modes.air). A change of pitch is a new angle at rest.
 bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, double time,
                                     bough_state_space *space);

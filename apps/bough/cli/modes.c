@@ -62,7 +62,7 @@ static void print_rod_head(const rod_modes *x) {
     if (x->turning.speed != 0) {
         bough_vec3 a = x->turning.axis;
         printf(", turning at %.9g rpm about (%.6g, %.6g, %.6g), seen from the rotating frame; gravity "
-               "in the mean of a turn",
+               "averaged over a revolution",
                x->turning.speed / BOUGH_RPM, a.x, a.y, a.z);
     }
     printf("\n%4s %12s %12s %11s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping",
