@@ -188,12 +188,12 @@ static void set_air(bough_arena *arena, work *w, reduced *x) {
 // The rates of the air include the rotation with the blades.
 static void turn_air(bough_arena *arena, const work *w, reduced *x) {
     int parts = w->system->def->n_part, per_blade = w->system->air->n_per_blade;
-    int *row = bough_arena_take(arena, (size_t)(parts * per_blade) * sizeof *row);
-    bough_air_tangent_rows(w->system->simulation, w->system->group, per_blade, row);
+    int first = w->system->group->n_row, n_all = first + per_blade;
+    const int *row = bough_air_tangent_rows(arena, w->system->simulation, w->system->group, per_blade);
     for (int k = 0; k < parts; k++) {
         for (int l = 0; l < parts; l++) {
-            for (int j = 0; j < per_blade; j++) {
-                int to = w->place[row[k * per_blade + j]], from = w->place[row[l * per_blade + j]];
+            for (int j = first; j < n_all; j++) {
+                int to = w->place[row[k * n_all + j] - w->n], from = w->place[row[l * n_all + j] - w->n];
                 if (to < 0 || from < 0) continue;
                 x->matrix[(size_t)(x->r + from) * (size_t)x->all + (size_t)(x->r + to)] -=
                     w->rate[k * parts + l];

@@ -2,23 +2,26 @@
 #include "apps/bough/analysis/air_tangent.h"
 
 struct bough_air_mean {
-    int n_part, n_row, n_air; // blades; states of each, of its air
-    const int *row;           // (n_part × n_row)
-    int *air_row;             // (n_part × n_air)
-    int *place;               // (n + all air) 1 + blade (n_row + n_air) + state; 0: of no blade
-    const double *blend;      // C (n_part × n_part)
+    int n_part, n_all;   // blades; states of each with those of its air
+    const int *row;      // (n_part × n_all)
+    int *place;          // (n + all air) 1 + blade n_all + state; 0: of no blade
+    const double *blend; // C (n_part × n_part)
     double share;
 };
 
-void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
-                            int *row) {
-    const bough_scene_turbine *turbine = &s->scene->turbine;
+int bough_air_tangent_blade(const bough_simulation *s, const bough_blade_group *group, int k) {
+    return bough_scene_blade(s->scene, (int)(group->blade[k]->body - s->scene->body));
+}
+
+const int *bough_air_tangent_rows(bough_arena *arena, const bough_simulation *s,
+                                  const bough_blade_group *group, int n_per_blade) {
+    int n = group->n_row, all = n + n_per_blade;
+    int *row = bough_arena_take(arena, (size_t)(group->n * all + 1) * sizeof *row);
     for (int k = 0; k < group->n; k++) {
-        for (int b = 0; b < turbine->n_blade; b++) {
-            if (bough_simulation_beam(s, turbine->blade[b]) != group->blade[k]) continue;
-            for (int j = 0; j < n_per_blade; j++) row[k * n_per_blade + j] = b * n_per_blade + j;
-        }
+        int air = s->master->assembly->n_state + bough_air_tangent_blade(s, group, k) * n_per_blade;
+        for (int j = 0; j < all; j++) row[k * all + j] = j < n ? group->row[k * n + j] : air + j - n;
     }
+    return row;
 }
 
 bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimuth *x,
@@ -26,27 +29,18 @@ bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimut
     const bough_blade_group *group = x->parts;
     bough_air_mean *m = bough_arena_take(arena, sizeof *m);
     *m = (bough_air_mean){.n_part = group->n,
-                          .n_row = group->n_row,
-                          .n_air = t->n_per_blade,
-                          .row = group->row,
+                          .n_all = group->n_row + t->n_per_blade,
+                          .row = bough_air_tangent_rows(arena, x->first, group, t->n_per_blade),
                           .blend = x->blend,
                           .share = x->share};
-    m->air_row = bough_arena_take(arena, (size_t)(m->n_part * m->n_air + 1) * sizeof *m->air_row);
     m->place = bough_arena_take(arena, (size_t)(t->all + 1) * sizeof *m->place);
-    bough_air_tangent_rows(x->first, group, m->n_air, m->air_row);
-    for (int k = 0; k < m->n_part; k++) {
-        int before = 1 + k * (m->n_row + m->n_air);
-        for (int j = 0; j < m->n_row; j++) m->place[m->row[k * m->n_row + j]] = before + j;
-        for (int j = 0; j < m->n_air; j++)
-            m->place[t->n + m->air_row[k * m->n_air + j]] = before + m->n_row + j;
-    }
+    for (int k = 0; k < m->n_part * m->n_all; k++) m->place[m->row[k]] = 1 + k;
     return m;
 }
 
 // State j of a blade among all and the air's.
-static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int blade, int j) {
-    if (j < m->n_row) return (size_t)m->row[blade * m->n_row + j];
-    return (size_t)(t->n + m->air_row[blade * m->n_air + j - m->n_row]);
+static size_t state_of(const bough_air_mean *m, int blade, int j) {
+    return (size_t)m->row[blade * m->n_all + j];
 }
 
 // A column that belongs to no blade: Cᵀ transforms the rates of the blades to those that an observer at rest
@@ -54,12 +48,11 @@ static size_t state_of(const bough_air_mean *m, const bough_air_tangent *t, int 
 static void add_other(const bough_air_mean *m, size_t at, const double *slope, bough_air_tangent *t) {
     for (size_t i = 0; i < (size_t)t->all; i++)
         if (m->place[i] == 0) *bough_air_tangent_entry(t, i, at) += m->share * slope[i];
-    for (int j = 0; j < m->n_row + m->n_air; j++) {
+    for (int j = 0; j < m->n_all; j++) {
         for (int k = 0; k < m->n_part; k++) {
             double sum = 0;
-            for (int l = 0; l < m->n_part; l++)
-                sum += m->blend[l * m->n_part + k] * slope[state_of(m, t, l, j)];
-            *bough_air_tangent_entry(t, state_of(m, t, k, j), at) += m->share * sum;
+            for (int l = 0; l < m->n_part; l++) sum += m->blend[l * m->n_part + k] * slope[state_of(m, l, j)];
+            *bough_air_tangent_entry(t, state_of(m, k, j), at) += m->share * sum;
         }
     }
 }
@@ -68,23 +61,23 @@ static void add_other(const bough_air_mean *m, size_t at, const double *slope, b
 // the mean over the blades as one of the first blade's, which C does not change.
 static void add_of_blade(const bough_air_mean *m, int blade, int j, const double *slope,
                          bough_air_tangent *t) {
-    int all = m->n_row + m->n_air;
+    int all = m->n_all;
     for (size_t i = 0; i < (size_t)t->all; i++) {
         if (slope[i] == 0) continue;
         if (m->place[i] > 0) {
             int to = (m->place[i] - 1) / all - blade, row = (m->place[i] - 1) % all;
-            *bough_air_tangent_entry(t, state_of(m, t, to < 0 ? to + m->n_part : to, row),
-                                     state_of(m, t, 0, j)) += m->share / m->n_part * slope[i];
+            *bough_air_tangent_entry(t, state_of(m, to < 0 ? to + m->n_part : to, row), state_of(m, 0, j)) +=
+                m->share / m->n_part * slope[i];
             continue;
         }
         for (int k = 0; k < m->n_part; k++)
-            *bough_air_tangent_entry(t, i, state_of(m, t, k, j)) +=
+            *bough_air_tangent_entry(t, i, state_of(m, k, j)) +=
                 m->share * m->blend[blade * m->n_part + k] * slope[i];
     }
 }
 
 void bough_air_mean_add(const bough_air_mean *m, int at, const double *slope, bough_air_tangent *t) {
-    int all = m->n_row + m->n_air, place = m->place[at];
+    int all = m->n_all, place = m->place[at];
     if (place == 0)
         add_other(m, (size_t)at, slope, t);
     else
@@ -93,8 +86,8 @@ void bough_air_mean_add(const bough_air_mean *m, int at, const double *slope, bo
 
 void bough_air_mean_add_own(const bough_air_mean *m, const int *column, const double *slope,
                             bough_air_tangent *t) {
-    for (int i = 0; i < m->n_row + m->n_air; i++)
-        *bough_air_tangent_entry(t, state_of(m, t, 0, i), state_of(m, t, 0, column[i])) +=
+    for (int i = 0; i < m->n_all; i++)
+        *bough_air_tangent_entry(t, state_of(m, 0, i), state_of(m, 0, column[i])) +=
             m->share / m->n_part * slope[i];
 }
 
@@ -102,14 +95,14 @@ void bough_air_mean_negate(bough_air_mean *m) { m->share = -m->share; }
 
 // The blocks of the first blade, repeated for the others with the blades shifted.
 static void repeat(const bough_air_mean *m, bough_air_tangent *t) {
-    int all = m->n_row + m->n_air;
+    int all = m->n_all;
     for (int j = 0; j < all; j++) {
         for (int k = 0; k < m->n_part; k++) {
             for (int i = 0; i < all; i++) {
-                double value = *bough_air_tangent_entry(t, state_of(m, t, k, i), state_of(m, t, 0, j));
+                double value = *bough_air_tangent_entry(t, state_of(m, k, i), state_of(m, 0, j));
                 for (int l = 1; l < m->n_part && value != 0; l++)
-                    *bough_air_tangent_entry(t, state_of(m, t, (k + l) % m->n_part, i),
-                                             state_of(m, t, l, j)) = value;
+                    *bough_air_tangent_entry(t, state_of(m, (k + l) % m->n_part, i), state_of(m, l, j)) =
+                        value;
             }
         }
     }

@@ -143,7 +143,7 @@ typedef struct blades {
     work *w;
     const bough_blade_group *group;
     int n_row, n_air, n_all; // of a blade
-    int *at;                 // (n_part × n_all) rows of them among the members' and then the air's
+    const int *at;           // (n_part × n_all) rows of them among the members' and then the air's
     double *place, *reach;   // (n_all); how far from it loads change
     double *size;            // (n_all) of differences
     int *nearest;            // (n_all) of the states changed at once
@@ -202,14 +202,9 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     b.nearest = bough_arena_take(arena, all * sizeof *b.nearest);
     b.check = bough_arena_doubles(arena, parts * all);
     bough_arena_each(arena, (size_t)(n + w->n_air) + 1, &b.expected, &b.changed);
-    b.at = bough_arena_take(arena, parts * all * sizeof *b.at);
-    int *air = bough_arena_take(arena, (parts * (size_t)n_air + 1) * sizeof *air);
-    bough_air_tangent_rows(s, group, n_air, air);
-    for (int k = 0; k < group->n; k++)
-        for (int j = 0; j < b.n_all; j++)
-            b.at[k * b.n_all + j] = j < n_row ? group->row[k * n_row + j] : n + air[k * n_air + j - n_row];
+    b.at = bough_air_tangent_rows(arena, s, group, n_air);
     b.number = bough_arena_take(arena, parts * sizeof *b.number);
-    bough_air_tangent_rows(s, group, 1, b.number);
+    for (int k = 0; k < group->n; k++) b.number[k] = bough_air_tangent_blade(s, group, k);
     b.n_load = (size_t)bough_aero_link_loads_size(s->aero, b.number[0]);
     bough_arena_each(arena, parts * b.n_load, &b.load[0], &b.load[1]);
     keep_loads(&b, 0);

@@ -89,6 +89,10 @@ void bough_air_mean_add_own(const bough_air_mean *mean, const int *column, const
 // Switches the sign of what is added from now on.
 void bough_air_mean_negate(bough_air_mean *mean);
 
-// Rows of the air's states of the group's blades (n × n_per_blade).
-void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
-                            int *row);
+// Rows of the states of the group's blades among the members' and then the air's: of each blade its own, then
+// the n_per_blade of its air (group->n × (group->n_row + n_per_blade)).
+const int *bough_air_tangent_rows(bough_arena *arena, const bough_simulation *s,
+                                  const bough_blade_group *group, int n_per_blade);
+
+// Number of blade k of the group among the rotor's.
+int bough_air_tangent_blade(const bough_simulation *s, const bough_blade_group *group, int k);

@@ -14,7 +14,7 @@ enum { AZIMUTHS = 4, MOST_BLADES = 16 };
 
 // -- blades seen by an observer at rest -----------------------------------------------------------
 
-// Rows of equal blades, of their states or of those of their air: row (n_part × n).
+// Rows of equal blades, of their states or also of those of their air: row (n_part × n).
 typedef struct blade_rows {
     int n_part, n;
     const int *row;
@@ -130,18 +130,6 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
     return bough_ok();
 }
 
-// Rows of the blades' states and, n_per_blade of each, of their air's.
-typedef struct both_rows {
-    blade_rows blade, air;
-} both_rows;
-
-static both_rows rows_of(bough_arena *arena, const bough_azimuths *a, int n_per_blade) {
-    const bough_blade_group *g = a->group;
-    int *air = bough_arena_take(arena, (size_t)(g->n * n_per_blade + 1) * sizeof *air);
-    bough_air_tangent_rows(a->at[0].simulation, g, n_per_blade, air);
-    return (both_rows){{g->n, g->n_row, g->row}, {g->n, n_per_blade, air}};
-}
-
 // -- the mean tangent -----------------------------------------------------------------------------
 
 bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bool dynamic,
@@ -171,10 +159,10 @@ bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a,
 struct bough_azimuth_product {
     const double *blend; // C
     bough_air_change *air;
-    both_rows rows;
-    int n, n_air; // states of the members, of the air
-    int angle;    // the row of the rotor's; −1: it counts
-    double *here; // (n + n_air) a vector as at this azimuth
+    blade_rows rows; // with those of the air
+    int n, n_air;    // states of the members, of the air
+    int angle;       // the row of the rotor's; −1: it counts
+    double *here;    // (n + n_air) a vector as at this azimuth
 };
 
 bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *a, int k,
@@ -186,7 +174,9 @@ bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bo
     *p = (bough_azimuth_product){.blend = x->blend, .n = point->whole->assembly->n_state, .angle = -1};
     p->air = bough_air_change_create(arena, x->simulation, point->whole, point->def.time, point->state,
                                      dynamic, &p->n_air);
-    p->rows = rows_of(arena, a, p->n_air / s->scene->turbine.n_blade);
+    int n_per_blade = p->n_air / s->scene->turbine.n_blade;
+    p->rows = (blade_rows){a->group->n, a->group->n_row + n_per_blade,
+                           bough_air_tangent_rows(arena, a->at[0].simulation, a->group, n_per_blade)};
     p->here = bough_arena_doubles(arena, (size_t)(p->n + p->n_air));
     int speed;
     if (a->n > 1) bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &p->angle, &speed);
@@ -194,18 +184,13 @@ bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bo
     return p;
 }
 
-static void blend_all(const bough_azimuth_product *p, bool back, double *x) {
-    blend(p->blend, back, p->rows.blade, x);
-    blend(p->blend, back, p->rows.air, x + p->n);
-}
-
 bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, bool to_one_side,
                                           const double *y, double *image) {
     memcpy(p->here, y, (size_t)(p->n + p->n_air) * sizeof *y);
-    blend_all(p, false, p->here);
+    blend(p->blend, false, p->rows, p->here);
     if (p->angle >= 0) p->here[p->angle] = 0;
     BOUGH_TRY(bough_air_change_follow(p->air, size, to_one_side, p->here, image));
-    blend_all(p, true, image);
+    blend(p->blend, true, p->rows, image);
     return bough_ok();
 }
 

@@ -139,20 +139,20 @@ static side find_side(bough_arena *arena, const work *w, const double *scale, bo
 static double *air_rates(bough_arena *arena, const work *w, const side *right) {
     const bough_air_tangent *t = w->system->air;
     int parts = w->system->def->n_part, n = t->n_per_blade;
-    int *row = bough_arena_take(arena, ((size_t)(parts * n) + 1) * sizeof *row);
     double *rate = bough_arena_doubles(arena, (size_t)w->m * 2 * (size_t)w->q + 1);
     bough_dense_product((bough_product){w->m, 2 * w->q, w->n, false, .factor = 1, .rows_a = t->all},
                         t->matrix + t->n, right->members, rate);
     bough_dense_product((bough_product){w->m, w->q, w->m, false, .factor = 1, .keep = 1, .rows_a = t->all},
                         bough_air_tangent_entry(t, (size_t)w->n, (size_t)w->n), right->air, rate);
     if (w->system->def->spin == 0) return rate;
-    bough_air_tangent_rows(w->system->simulation, w->system->group, n, row);
+    int first = w->system->group->n_row, all = first + n;
+    const int *row = bough_air_tangent_rows(arena, w->system->simulation, w->system->group, n);
     for (int c = 0; c < w->q; c++) {
         const double *from = right->air + (size_t)c * (size_t)w->m;
         double *to = rate + (size_t)c * (size_t)w->m;
         for (int k = 0; k < parts * parts * n; k++) {
-            int a = k / n / parts, b = k / n % parts, j = k % n;
-            to[row[a * n + j]] -= w->rate[a * parts + b] * from[row[b * n + j]];
+            int a = k / n / parts, b = k / n % parts, j = first + k % n;
+            to[row[a * all + j] - w->n] -= w->rate[a * parts + b] * from[row[b * all + j] - w->n];
         }
     }
     return rate;

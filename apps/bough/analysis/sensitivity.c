@@ -20,8 +20,9 @@ typedef struct linear {
     bool in_air, dynamic;                       // the air's forces follow the motion; they have memory
     bough_azimuths azimuths;                    // A is the mean over these
     bough_azimuth_product **air;                // (azimuths.n)
-    int n, m, n_row;                            // states of the members, of the air; of the latter in a blade
-    int *air_row;                               // (n_part × n_row)
+    int n, m;                                   // states of the members, of the air
+    int n_all;                                  // of a blade and its air
+    const int *row;                             // (n_part × n_all) their rows among all
     double *scale;                              // (n)
     double *rate;                               // S (n_part × n_part), row-major
     double *moved, *side[2], *turned, *follows; // (n + m) work
@@ -39,31 +40,27 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
         x->air = bough_arena_take(arena, (size_t)x->azimuths.n * sizeof *x->air);
         for (int k = 0; k < x->azimuths.n; k++)
             x->air[k] = bough_azimuth_product_create(arena, &x->azimuths, k, x->dynamic, &x->m);
-        x->n_row = x->m / s->scene->turbine.n_blade;
     }
+    int n_air = x->in_air ? x->m / s->scene->turbine.n_blade : 0;
+    x->n_all = def->n_row + n_air;
+    x->row = bough_air_tangent_rows(arena, s, &x->point.group, n_air);
     size_t all = (size_t)(x->n + x->m) + 1, parts = (size_t)def->n_part;
     bough_arena_each(arena, all, &x->moved, &x->side[0], &x->side[1], &x->turned, &x->follows);
     x->scale = bough_arena_doubles(arena, all);
     bough_assembly_scales(s->master->assembly, x->scale);
-    x->air_row = bough_arena_take(arena, (parts * (size_t)x->n_row + 1) * sizeof(int));
-    bough_air_tangent_rows(s, &x->point.group, x->n_row, x->air_row);
     x->rate = bough_arena_doubles(arena, parts * parts + 1);
     if (def->spin != 0) bough_modes_rate(def, x->rate);
     return bough_ok();
 }
 
-// Row j of blade k among all states, first its own, then those of its air.
-static int row_of(const linear *x, int k, int j) {
-    const bough_modes_def *def = &x->point.def;
-    return j < def->n_row ? def->row[k * def->n_row + j] : x->n + x->air_row[k * x->n_row + j - def->n_row];
-}
+static int row_of(const linear *x, int blade, int j) { return x->row[blade * x->n_all + j]; }
 
 // −S y
 static void subtract_spin(const linear *x, const double *y, double *image) {
     const bough_modes_def *def = &x->point.def;
     for (int k = 0; k < def->n_part; k++)
         for (int l = 0; l < def->n_part; l++)
-            for (int j = 0; j < def->n_row + x->n_row; j++)
+            for (int j = 0; j < x->n_all; j++)
                 image[row_of(x, k, j)] -= x->rate[k * def->n_part + l] * y[row_of(x, l, j)];
 }
 
@@ -72,7 +69,7 @@ static bool moves_others(const linear *x, const double *y) {
     int moved = 0;
     for (int i = 0; i < x->n + x->m; i++) moved += y[i] != 0;
     for (int k = 0; k < x->point.def.n_part; k++)
-        for (int j = 0; j < x->point.def.n_row + x->n_row; j++) moved -= y[row_of(x, k, j)] != 0;
+        for (int j = 0; j < x->n_all; j++) moved -= y[row_of(x, k, j)] != 0;
     return moved > 0;
 }
 
@@ -81,14 +78,13 @@ static void take_blades(const linear *x, int shift, const double *y, double *to)
     int n = x->point.def.n_part;
     memset(to, 0, (size_t)(x->n + x->m) * sizeof *to);
     for (int k = 0; k < n; k++)
-        for (int j = 0; j < x->point.def.n_row + x->n_row; j++)
-            to[row_of(x, k, j)] = y[row_of(x, (k + shift) % n, j)];
+        for (int j = 0; j < x->n_all; j++) to[row_of(x, k, j)] = y[row_of(x, (k + shift) % n, j)];
 }
 
 static void add_blades(const linear *x, int shift, double factor, const double *from, double *image) {
     int n = x->point.def.n_part;
     for (int k = 0; k < n; k++)
-        for (int j = 0; j < x->point.def.n_row + x->n_row; j++)
+        for (int j = 0; j < x->n_all; j++)
             image[row_of(x, (k + shift) % n, j)] += factor * from[row_of(x, k, j)];
 }
 
