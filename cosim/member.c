@@ -29,9 +29,9 @@ static bool linearise(void *self, double t, const double *y) {
     return m->system.ops->linearise(m->system.self, t, y, input_at(m, t), m->factors);
 }
 
-static bool linearise_ahead(void *self, double t, const double *y, const double *ahead) {
+static bool linearise_ahead(void *self, double t, const double *y, const double *ahead, bool keep) {
     const bough_member *m = self;
-    return m->system.ops->linearise_ahead(m->system.self, t, y, ahead, m->factors);
+    return m->system.ops->linearise_ahead(m->system.self, t, y, ahead, keep, m->factors);
 }
 
 static bool factor(void *self, double gamma) {

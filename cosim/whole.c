@@ -131,6 +131,10 @@ static bough_operating_point operating_point(const bough_whole *whole, int i) {
                                    whole->setup_input + a->input_offset[i], whole->gamma};
 }
 
+static bool keeps_factors(const bough_whole *whole, int i) {
+    return whole->keeps && whole->assembly->member[i]->system.ops->kept_tangent != NULL;
+}
+
 // Leaders first: their responses take long, and the responses of followers need them.
 static void factor_member(void *self, int place) {
     bough_whole *whole = self;
@@ -139,6 +143,7 @@ static void factor_member(void *self, int place) {
     int i = a->by_role[(place + a->n_follower) % a->n_member];
     bough_operating_point at = operating_point(whole, i);
     whole->status[i].code = BOUGH_OK;
+    if (keeps_factors(whole, i)) return;
     bool good = whole->linearised || bough_interface_linearise(k, i, &at);
     if (good && bough_interface_factor(k, i, &at)) return;
     whole->status[i] = bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", a->member[i]->system.name);
@@ -147,7 +152,7 @@ static void factor_member(void *self, int place) {
 // The follower's response to the coordinates of the interface.
 static void respond(bough_whole *whole, int i) {
     bough_operating_point at = operating_point(whole, i);
-    bough_interface_respond(whole->interface, i, &at);
+    if (!keeps_factors(whole, i)) bough_interface_respond(whole->interface, i, &at);
 }
 
 static bool factor_border(bough_whole *whole);
@@ -158,7 +163,7 @@ static void set_point(bough_whole *whole, double t, const double *state, const d
     memcpy(whole->setup_state, state, (size_t)a->n_state * sizeof(double));
     memcpy(whole->setup_input, input, (size_t)a->n_input * sizeof(double));
     whole->setup_time = t;
-    whole->linearised = false;
+    whole->linearised = whole->keeps = false;
 }
 
 // Factors I − γJ there.
@@ -170,6 +175,7 @@ static bough_status factor_there(bough_whole *whole, double gamma) {
     whole->linearised = true;
     // responses of the followers to the leaders, then the interface
     each(whole, FOLLOWERS, respond);
+    whole->keeps = false;
     if (bough_interface_close(whole->interface) && factor_border(whole)) return bough_ok();
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
 }
@@ -375,10 +381,12 @@ static bool linearise(void *self, double t, const double *state, const double *i
     return true;
 }
 
-static bool linearise_ahead(void *self, double t, const double *state, const double *ahead, void *factors) {
+static bool linearise_ahead(void *self, double t, const double *state, const double *ahead, bool keep,
+                            void *factors) {
     bough_whole *own = factors;
     const bough_assembly *a = own->assembly;
     linearise(self, t, state, NULL, factors);
+    own->keeps = keep;
     for (int i = 0; i < a->n_member; i++) {
         const bough_system *s = &a->member[i]->system;
         int first = a->state_offset[i];

@@ -22,6 +22,7 @@ typedef struct bough_whole {
     double *setup_state; // (n_state)
     double *setup_input; // (n_input)
     bool linearised;     // members are linearised there
+    bool keeps;          // those with kept_tangent are not: they keep tangents and factors
     double gamma;        // [s]
     bough_interface *interface;
 

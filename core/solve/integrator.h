@@ -36,7 +36,7 @@ typedef struct bough_ode {
     bool (*derivative_twice)(void *self, const double t[2], const double *y, double *const rate[2]);
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     // as in system.h; NULL: not known
-    bool (*linearise_ahead)(void *self, double t, const double *y, const double *ahead);
+    bool (*linearise_ahead)(void *self, double t, const double *y, const double *ahead, bool keep);
     bool (*factor)(void *self, double gamma); // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);     // in place
     double elastic_rate;                      // [1/s] as in system.h

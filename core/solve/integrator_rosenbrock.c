@@ -47,6 +47,7 @@ typedef struct rosenbrock {
     double new_error;     // of the last step with new tangents, over h³ [s⁻³]
     double least;         // error of the steps since the tangents were found
     int age, most_age;    // steps since the tangents were found, and after which they are renewed
+    bool kept_twice;      // those of what deforms are older
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     bough_rosenbrock_step now; // the step in progress
@@ -143,11 +144,14 @@ static bool linearise(rosenbrock *m, double t, const double *y, double h) {
     if (!ode->linearise_ahead) return ode->linearise(ode->self, t, y);
     double by = m->last_step > 0 ? oldest(m) / 2.0 * fmin(h / m->last_step, 1) : 0;
     for (int k = 0; k < ode->n; k++) m->ahead[k] = y[k] + by * (y[k] - m->last[k]);
-    return ode->linearise_ahead(ode->self, t, y, m->ahead);
+    return ode->linearise_ahead(ode->self, t, y, m->ahead, m->kept_twice);
 }
 
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
     bool due = m->age == oldest(m), compare = undamped(m, gamma / gamma_h) && due && m->factored > 0;
+    bool same = fabs(m->factored - gamma) <= rounding * gamma;
+    // tangents that served as long as they may are kept once more, of what deforms
+    m->kept_twice = due && same && !compare && !m->kept_twice && m->age == m->kept;
     if (due) m->useful = fmin(older * m->useful, m->kept);
     // the last increment under old tangents, for comparison with renewed ones
     if (compare) filter_increment(m, m->old);
@@ -155,7 +159,7 @@ static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamm
     m->sum.factorisations++;
     if (!linearise(m, t, y, gamma / gamma_h) || !m->ode.factor(m->ode.self, gamma)) return false;
     if (!undamped(m, gamma / gamma_h)) m->most_age = m->kept;
-    if (compare && fabs(m->factored - gamma) <= rounding * gamma) {
+    if (compare && same) {
         filter_increment(m, m->fresh);
         choose_age(m);
     }

@@ -60,7 +60,9 @@ typedef struct bough_system_ops {
                          double *output_rate);
 
     // As linearise without input, with members whose tangents may be ahead at another state (n_state).
-    bool (*linearise_ahead)(void *self, double t, const double *state, const double *ahead, void *factors);
+    // `keep`: members with kept_tangent keep their tangents, and for the same γ their factors.
+    bool (*linearise_ahead)(void *self, double t, const double *state, const double *ahead, bool keep,
+                            void *factors);
 
     // Projects a state that was integrated to t onto its constraints: prescribed motions, quaternions
     // of length 1. True when the change is so large that a multistep method must restart.
