@@ -173,13 +173,6 @@ static void find_directions(bough_interface *k, int member) {
     }
 }
 
-static bool any(const double *x, int n) {
-    for (int i = 0; i < n; i++) {
-        if (x[i] != 0) return true;
-    }
-    return false;
-}
-
 void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_interface_member *part = &k->part[member];
@@ -190,7 +183,7 @@ void bough_interface_respond(bough_interface *k, int member, const bough_operati
         double *response = part->output_change + (size_t)d * (size_t)s->n_output;
         memset(state, 0, (size_t)s->n_state * sizeof(double));
         memset(response, 0, (size_t)s->n_output * sizeof(double));
-        if (!any(direction, s->n_input)) continue;
+        if (bough_all_zero(s->n_input, direction)) continue;
         // x = (I − γJ)⁻¹ γ ∂f/∂u δu, then the outputs
         bough_interface_add_columns(k, member, at->gamma, direction, state);
         bough_interface_solve_member(k, member, state);

@@ -191,12 +191,6 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 // The coordinates are those of the solution before until a leader is solved: others may still respond to it.
 void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
-static bool is_zero(int n, const double *x) {
-    for (int i = 0; i < n; i++)
-        if (x[i] != 0) return false;
-    return true;
-}
-
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held. A member whose states are
 // coordinates of the interface hands over r_i instead: the interface solves for them.
 void bough_whole_solve_of(bough_whole *whole, int i) {
@@ -210,7 +204,7 @@ void bough_whole_solve_of(bough_whole *whole, int i) {
         memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
         memset(x, 0, (size_t)s->n_state * sizeof(double));
     }
-    if (is_zero(s->n_state, x)) { // as of all members but one in a column of the inverse
+    if (bough_all_zero(s->n_state, x)) { // as of all members but one in a column of the inverse
         memset(moved, 0, (size_t)s->n_output * sizeof(double));
         return;
     }

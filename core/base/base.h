@@ -41,6 +41,12 @@ enum { BOUGH_COLUMN = 8 };
 
 static inline int bough_padded(int n) { return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES; }
 
+static inline bool bough_all_zero(int n, const double *x) {
+    for (int i = 0; i < n; i++)
+        if (x[i] != 0) return false;
+    return true;
+}
+
 // x − x is 0 where x is finite, else NaN; without a branch, for vector instructions.
 static inline bool bough_all_finite(size_t n, const double *x) {
     double sum = 0;

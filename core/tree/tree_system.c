@@ -309,6 +309,10 @@ static void solve_tree(tree_system *s, const tree_factors *k, double *x) {
         memcpy(s->y, x, (size_t)s->n * sizeof(double));
         select_states(s, false, x);
     }
+    if (s->prescribed && bough_all_zero(s->n, x)) { // as in their columns of the inverse
+        memcpy(x, s->y, (size_t)s->n * sizeof(double));
+        return;
+    }
     for (int i = 0; i < tree->n_v; i++) {
         s->r[i] = -c * x[tree->n_q + i];
         x[tree->n_q + i] = 0;

@@ -157,23 +157,26 @@ static void vertex_response(const bough_rod_model *m, const bough_rod_scratch *s
     for (int c = 0; c < 6; c++) column[(BOUGH_ROD_U + c) * n + i] += values[c];
 }
 
-// Column of ∂f/∂u₀ⱼ, ∂f/∂ωⱼ or ∂f/∂gⱼ over the vertices' kinematics; e the unit vector.
-static void frame_column(const bough_rod_model *m, const double *state, int kind, bough_vec3 e,
-                         double *column) {
-    int n = m->n;
+// Column of ∂f/∂ω along a unit vector e over the vertices' kinematics, by theory (16): −e×x, −½ (0,e)∘p; and
+// −e×u of (11).
+static void spin_column(int n, const double *restrict state, bough_vec3 e, double *restrict column) {
+#pragma omp simd
     for (int i = 0; i < n; i++) {
-        bough_vec3 x = lane_load(state, n, i), u = lane_load(state + (size_t)BOUGH_ROD_U * n, n, i);
-        bough_quaternion p = lane_load_quaternion(state + (size_t)BOUGH_ROD_P * n, n, i);
-        if (kind == 0) lane_store(column, n, i, bough_scale(-1, e));
-        if (kind == 2) lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, e);
-        if (kind != 1) continue;
-        // by theory (16): −e×x, −½ (0,e)∘p; and −e×u of (11)
+        bough_vec3 x = lane_load(state, n, i), u = lane_load(state + BOUGH_ROD_U * n, n, i);
+        bough_quaternion p = lane_load_quaternion(state + BOUGH_ROD_P * n, n, i);
         bough_quaternion rate = bough_quaternion_product((bough_quaternion){0, e.x, e.y, e.z}, p);
         lane_store(column, n, i, bough_cross(x, e));
         column[3 * n + i] = -0.5 * rate.w;
-        lane_store(column + (size_t)4 * n, n, i, bough_scale(-0.5, bough_v3(rate.x, rate.y, rate.z)));
-        lane_store(column + (size_t)BOUGH_ROD_U * n, n, i, bough_cross(u, e));
+        lane_store(column + 4 * n, n, i, bough_scale(-0.5, bough_v3(rate.x, rate.y, rate.z)));
+        lane_store(column + BOUGH_ROD_U * n, n, i, bough_cross(u, e));
     }
+}
+
+// That of u₀, ω or g, by `kind`.
+static void frame_column(int n, const double *state, int kind, int axis, double *column) {
+    int row = kind == 0 ? axis : BOUGH_ROD_U + axis;
+    if (kind == 1) spin_column(n, state, bough_unit3(axis), column);
+    for (int i = 0; i < n && kind != 1; i++) column[row * n + i] = kind - 1;
 }
 
 // The root's motion strains the first segment.
@@ -181,7 +184,7 @@ static void root_columns(const bough_rod_model *m, const double *state, const bo
                          double *column) {
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
         double e[6] = {0};
-        frame_column(m, state, j / 3, bough_unit3(j % 3), column);
+        frame_column(m->n, state, j / 3, j % 3, column);
         if (j / 3 == 2) continue;
         e[j] = 1;
         vertex_variation l = root_variation(m, e), r = {0};
