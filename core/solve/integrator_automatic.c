@@ -2,7 +2,8 @@
 // The former's steps are long where motion is slow or stiff and damped. Where stiff members vibrate without
 // damping every method must follow them, and IDA then takes an evaluation a step and order 5: a tenth of the
 // cost at a tenth of the tolerance. So IDA is tried after a macro step of many steps, and stays where it
-// is cheaper; it also takes over where the Rosenbrock method stops.
+// is cheaper; it also takes over where the Rosenbrock method stops. Where IDA stops as well, the Rosenbrock
+// method goes on with as many steps: it damps what vibrates fast, and its steps then grow.
 // Orders above 2 are unstable near the imaginary axis. Where vibrations are small beside a loose tolerance,
 // this limits their steps, and not the error. So a coarse solution also has IDA of order 2, at its whole
 // tolerance. The methods that it does not use are tried after 2 macro steps of IDA, 6 more, 18 more, ...
@@ -101,6 +102,11 @@ static bool try_next(automatic *m, double *t, double t1, double *y) {
     return taken;
 }
 
+static void limit_rosenbrock(automatic *m, int most_steps) {
+    m->most_steps[ROSENBROCK] = most_steps;
+    m->method[ROSENBROCK].ops->limit(m->method[ROSENBROCK].self, most_steps);
+}
+
 static bool is_due(const automatic *m) {
     if (m->now == ROSENBROCK) return m->cost > 2 * m->lost;
     return m->n_method == METHODS && m->taken >= m->wait;
@@ -113,14 +119,21 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
         m->goes_on = false;
         m->cost = m->lost = 0;
         m->wait = FIRST_WAIT;
+        limit_rosenbrock(m, ROSENBROCK_STEPS);
     }
     if (is_due(m) && try_next(m, t, t1, y)) return bough_ok();
-    bough_status first = take(m, m->now, t, t1, !m->goes_on, y);
-    if (bough_is_ok(&first) || m->now != ROSENBROCK) return first;
-    // where it stops, IDA from there on
     double begun = *t;
-    bough_status second = take(m, IDA, t, t1, true, y);
-    return bough_is_ok(&second) || *t > begun ? second : first;
+    bough_status status = take(m, m->now, t, t1, !m->goes_on, y);
+    if (!bough_is_ok(&status) && m->now == ROSENBROCK) {
+        begun = *t;
+        status = take(m, IDA, t, t1, true, y);
+    }
+    if (bough_is_ok(&status)) return status;
+    *t = begun; // that of y
+    limit_rosenbrock(m, m->most_steps[IDA]);
+    status = take(m, ROSENBROCK, t, t1, true, y);
+    m->lost = m->cost;
+    return status;
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
