@@ -176,16 +176,14 @@ bool bough_coarser_steps_alone(const bough_scene *scene) {
 
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
 // vibrations stay whose phases and amplitudes err at a lower order; a tenth beside a still larger tolerance
-// of rigid bodies; half where loads of the air are held constant between samples, which is of order 1. What a
-// coupling errs by is the whole difference to a solution without one: all of it by a coupling that is
-// explicit, repeats steps or is of order 1, as any is across a jump within a macro step, or of fixed steps;
-// half otherwise, where steps and mesh take part.
+// of rigid bodies. What a coupling errs by is the whole difference to a solution without one: all of it by a
+// coupling that is explicit, repeats steps or is of order 1, as any is across a jump within a macro step, or
+// of fixed steps; half otherwise, where steps and mesh take part.
 static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
-    bool air = scene->aero.node != NULL, held = air && holds_loads(scene);
     if (has_fixed_steps(scene)) return 1;
-    if (scheme->one_system) return held ? 0.5 : air ? 0.25 : bough_coarser_steps_alone(scene) ? 0.1 : 0.4;
+    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.1 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
                  bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
@@ -203,9 +201,10 @@ double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other) {
     return ratio;
 }
 
+// Loads that are held constant lag by half a sample, an error of order 1.
 double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *other) {
-    bool halved = holds_loads(scene) && other->aero.rate > scene->aero.rate;
-    return halved ? bough_finer_air_ratio(scene) : usual_ratio(scene);
+    if (!scene->aero.node || !holds_loads(scene)) return usual_ratio(scene);
+    return other->aero.rate > scene->aero.rate ? bough_finer_air_ratio(scene) : 1;
 }
 
 // -- time -----------------------------------------------------------------------------------------

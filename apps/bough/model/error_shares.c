@@ -160,6 +160,14 @@ static between between_companion_and(const bough_companion *c, int kind, double 
     return (between){part, kind == BOUGH_SHARE_AIR ? c->ratio_held : part, largest};
 }
 
+// Error of the run over the difference to such a run. Beside the air of the run neither held loads nor jumps
+// of the wind differ.
+static double ratio_of_others(const bough_companion *c, int kind) {
+    if (kind != BOUGH_SHARE_AIR) return c->ratio;
+    return fmax(between_companion_and(c, BOUGH_SHARE_MESH, NULL).part,
+                between_companion_and(c, BOUGH_SHARE_TIME, NULL).part);
+}
+
 // A run that is as fine as the run itself in one part differs from the companion by that part and from the
 // run by the others. If it fails, that error is unknown. BOUGH_INTERRUPTED by stop().
 static bough_status find_share(finding *x, int kind) {
@@ -172,7 +180,7 @@ static bough_status find_share(finding *x, int kind) {
     }
     x->left_alone = most_alone * bough_companion_work(c) + little;
     further f = {x, BOUGH_COARSER_ALL & ~coarser[kind], between_companion_and(c, kind, share->largest),
-                 (between){c->ratio, c->ratio_held, share->others}};
+                 (between){ratio_of_others(c, kind), c->ratio_held, share->others}};
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (!bough_is_ok(&status)) unknown(share, status.message);

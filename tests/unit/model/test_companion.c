@@ -671,3 +671,24 @@ TEST(beside_a_finer_mesh_held_loads_are_sampled_in_shorter_steps) {
     assert_true(c->error[bough_channels_find(&r.channels, "RtVAvgxh")] < 0.02);
     for (int w = 0; w < 3; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 2 * error[w]);
 }
+
+// An error of order 1 is the whole difference to half the rate; what the mesh and the steps err by is not.
+TEST(held_loads_err_by_the_whole_difference) {
+    static const char *const sets[] = {HELD_LOADS, "bodies[3-5].rod.segments=24", NULL};
+    static const char *const truth[] = {
+        HELD_LOADS,      "bodies[3-5].rod.segments=24",    "simulation.macro_step=2.5 ms",
+        "aero.rate=400", "simulation.error_estimate=none", NULL};
+    static const char *const channel[] = {"RotSpeed", "TipDxb1", "RootMyb1", NULL};
+    bough_run r;
+    double error[3], estimate[3];
+    check_arena(arena);
+    run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth, 11, &r, channel, error, estimate);
+    for (int w = 0; w < 3; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 2 * error[w]);
+    bough_error_shares shares = find_shares(arena, &r);
+    const bough_error_share *s = shares.share;
+    for (int w = 0; w < 3; w++) {
+        int i = bough_channels_find(&r.channels, channel[w]);
+        assert_true(s[BOUGH_SHARE_AIR].others[i] <
+                    1.5 * (s[BOUGH_SHARE_MESH].largest[i] + s[BOUGH_SHARE_TIME].largest[i]));
+    }
+}
