@@ -97,7 +97,7 @@ enum { BLOCK = 4, FIRST = 64 }; // macro steps
 // theory (71), wherever that takes one step in each of its macro steps. Halved ones follow each other,
 // because every change of the step takes new factors.
 static bool taken_in_halves(const bough_master *m) {
-    if (!m->halves || m->split) return m->halves;
+    if (!m->halves || m->split || m->halve) return m->halves;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % (8 * BLOCK) < BLOCK;
     return m->at_event || m->grid_index % (2 * BLOCK) < BLOCK || m->many_steps;
 }

@@ -33,7 +33,7 @@ typedef struct bough_master_def {
     double macro_step; // H, the longest [s]
     // Some macro steps are taken in halves, for a system that is integrated as one: four of every eight
     // of the first 64 (all of them where its integrator takes several steps in each), four of every 32 later,
-    // and those after events.
+    // those after events, and by `halve`.
     bool halves;
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0
@@ -65,6 +65,7 @@ typedef struct bough_master {
     bool compared; // another solution shows the error, so that growth of forces is not judged and steps that
                    // have not converged go on
     bool split;    // what lies between two events or points of the grid is taken in two steps
+    bool halve;    // the next macro step is taken in halves, where some are
     bool (*stop)(void); // NULL: never
 
     // by each step

@@ -131,6 +131,18 @@ static bool may_split(const bough_companion *c) {
     return may && !c->coarser.simulation->master->split;
 }
 
+// Whether a joint has just touched one of its stops or will within a macro step.
+static bool strikes(const bough_simulation *s) {
+    for (int i = 0; i < s->scene->n_body; i++) {
+        const bough_joint_spring *x = &s->scene->body[i].joint.spring;
+        if (!(x->stop_stiffness > 0)) continue;
+        bough_motion_point now = bough_simulation_joint_point(s, i);
+        double reach = fabs(now.v) * s->master->macro_step;
+        if (now.q - reach < x->low || now.q + reach > x->high) return true;
+    }
+    return false;
+}
+
 void bough_companion_step(bough_companion *c, bool ahead) {
     const bough_master *m = c->coarser.simulation->master;
     bool alone = c->run->scene->n_input == 0 && !may_split(c); // its steps need nothing of the run
@@ -138,6 +150,8 @@ void bough_companion_step(bough_companion *c, bool ahead) {
     c->n_row = c->present = 0;
     while (c->n_row < most && bough_is_ok(&c->status) && !bough_master_done(m)) {
         do {
+            // a contact may be over within its macro step
+            c->coarser.simulation->master->halve = strikes(c->coarser.simulation);
             c->status = bough_other_run_step(&c->coarser, c->run);
         } while (bough_is_ok(&c->status) && !meets_run(c));
         if (bough_is_ok(&c->status)) take_row(c);
@@ -373,6 +387,8 @@ static void compare(bough_companion *c) {
     bool held = rarer ? !row->sampled : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
+    // where steps notice a contact is chance, in longer ones as well: both solutions err alike
+    if (c->ratio < 1 && strikes(c->run)) c->ratio = 1;
     double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
     c->flutters = c->flutters || flutters(missed_air(c->run), row->missed_air);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));

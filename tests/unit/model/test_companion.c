@@ -692,3 +692,16 @@ TEST(held_loads_err_by_the_whole_difference) {
                     1.5 * (s[BOUGH_SHARE_MESH].largest[i] + s[BOUGH_SHARE_TIME].largest[i]));
     }
 }
+
+// Both solutions notice a contact by chance, and its velocities are compared only in halves of macro steps.
+TEST(a_contact_has_its_error) {
+    static const char *const sets[] = {NULL};
+    static const char *const truth[] = {"simulation.error_estimate=none", "simulation.macro_step=2.5 ms",
+                                        "simulation.master={solver: ida, rtol: 1e-8}", NULL};
+    static const char *const channel[] = {"ballVel", NULL};
+    bough_run r;
+    double error, estimate;
+    check_arena(arena);
+    run_beside(arena, "tests/data/scenes/ball.yaml", sets, truth, 0, &r, channel, &error, &estimate);
+    assert_true(estimate > error / 3 && estimate < 10 * error);
+}
