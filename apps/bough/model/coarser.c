@@ -369,11 +369,11 @@ static const double largest_rtol = 1e-4; // of the finer solution
 
 enum { MOST_STEPS = 1000 }; // of the finer solution in a macro step
 
-// The finer solution follows vibrations by the Rosenbrock method alone: IDA takes up to twenty times as long.
+// The finer solution follows vibrations by the Rosenbrock method: IDA takes up to twenty times as long, and
+// the tangents of Radau's method as many evaluations as there are states.
 static void follow_vibrations(bough_scene *to) {
-    bough_scene_solver *master = &to->simulation.master;
-    if (master->solver == BOUGH_AUTOMATIC) master->solver = BOUGH_ROSENBROCK;
-    master->most_steps = MOST_STEPS;
+    to->simulation.master.solver = BOUGH_ROSENBROCK;
+    to->simulation.master.most_steps = MOST_STEPS;
 }
 
 // A run whose tolerance allows longer steps takes one in a macro step.
@@ -454,8 +454,7 @@ double bough_other_run_work_of_step(const bough_other_run *other) {
 
 void bough_other_run_limit(bough_other_run *other, int most_steps) {
     const bough_integrator *x = &bough_scheme_whole(other->simulation->master->coupling)->integrator;
-    if (other->simulation->scene->simulation.master.solver == BOUGH_ROSENBROCK)
-        x->ops->limit(x->self, most_steps);
+    x->ops->limit(x->self, most_steps);
 }
 
 void bough_other_run_sample(bough_other_run *other) {

@@ -77,9 +77,8 @@ static double work_left(const bough_finer *f, const bough_master *run, double wo
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
 static int most_steps(const bough_finer *f, const bough_master *run, double work) {
     const bough_simulation *own = f->other.simulation;
-    const bough_scene_solver *solver = &own->scene->simulation.master;
-    int most = solver->most_steps;
-    if (solver->solver != BOUGH_ROSENBROCK || own->master->time > f->from) return most;
+    int most = own->scene->simulation.master.most_steps;
+    if (own->master->time > f->from) return most;
     double allowed = work_left(f, run, work, little_at_first) / bough_other_run_work_of_step(&f->other);
     return (int)fmin(most, fmax(least_steps, allowed));
 }

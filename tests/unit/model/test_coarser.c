@@ -72,6 +72,10 @@ TEST(a_scene_is_coarser_in_everything) {
     check_near(c->aero.rate, 50, 1e-15, 0);
     for (int i = 0; i < c->n_body; i++)
         assert_int_equal(c->body[i].rod.n_segment, x.scene->body[i].rod.n_segment);
+    // what follows vibrations is by the Rosenbrock method, whatever the run is by
+    x = coarser_of(arena, "tests/data/scenes/prop.yaml", NULL, NULL);
+    c = bough_coarser_scene(arena, x.scene, BOUGH_FINEST_TIME);
+    assert_int_equal(c->simulation.master.solver, BOUGH_ROSENBROCK);
 }
 
 // Rods of few segments get more, all blades as many, and the part of the difference follows; it is the whole
