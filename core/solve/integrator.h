@@ -57,8 +57,9 @@ typedef struct bough_integrator_options {
     double rtol;    // tolerance per state: rtol · scale; of Newton's method in generalised-α
     double step;    // longest step of generalised-α and the Rosenbrock method [s]; 0: none
     double rho;     // of generalised-α: spectral radius at infinite frequency, 0 … 1
-    int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
+    int most_steps; // of IDA, CVODE and the Rosenbrock method in a macro step; 0: their own limits
     int most_order; // of IDA; 0: 5
+    bool by_bdf;    // beside a run by BDF: the automatic choice begins with CVODE
     bool coarse;    // of long steps: the Rosenbrock method takes a third of the usual damping to cover old
                     // tangents, and renews them after half the usual steps; the automatic choice of a
                     // method has one more

@@ -6,20 +6,26 @@
 // method goes on with as many steps: it damps what vibrates fast, and its steps then grow.
 // Orders above 2 are unstable near the imaginary axis. Where vibrations are small beside a loose tolerance,
 // this limits their steps, and not the error. So a coarse solution also has IDA of order 2, at its whole
-// tolerance. The methods that it does not use are tried after 2 macro steps of IDA, 6 more, 18 more, ...
+// tolerance. One beside a run whose rods are by BDF begins with CVODE, until a macro step takes many steps.
+// The methods that it does not use are tried after 2 macro steps of IDA or CVODE, 6 more, 18 more, ...
 #include "core/solve/integrator.h"
 
-enum { ROSENBROCK, IDA, IDA_OF_ORDER_2, METHODS };
+enum { ROSENBROCK, IDA, IDA_OF_ORDER_2, CVODE, METHODS };
+
+static const bough_integrator_kind kind_of[METHODS] = {BOUGH_ROSENBROCK, BOUGH_IDA, BOUGH_IDA,
+                                                       BOUGH_CVODE_BDF};
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
-enum { MANY_STEPS = 100 };           // in a macro step: beside as many the start of IDA costs little
+// In a macro step: beside as many the start of IDA costs little, and so many end CVODE.
+enum { MANY_STEPS = 100 };
 enum { FIRST_WAIT = 2, LONGER = 3 }; // macro steps before the first trial; factor of each further wait
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
-static const double tighter = 0.1;   // tolerance of IDA, relative: its errors add up over many short steps
-static const double cheaper = 0.7;   // cost of a method that takes over from IDA, relative
+static const double tighter =
+    0.1; // tolerance of IDA and CVODE, relative: their errors add up over many short steps
+static const double cheaper = 0.7; // cost of a method that takes over from IDA, relative
 
 typedef struct automatic {
-    int n, n_method;
+    int n, n_method, first; // first: method after a start
     bough_integrator method[METHODS];
     int most_steps[METHODS]; // in a macro step
     int now;                 // method of the last macro step
@@ -35,13 +41,16 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     automatic *m = bough_arena_take(arena, sizeof *m);
     int ida_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
     m->n = ode->n;
-    m->n_method = options->coarse ? METHODS : IDA_OF_ORDER_2;
+    m->first = options->by_bdf ? CVODE : ROSENBROCK;
+    m->n_method = options->by_bdf ? METHODS : options->coarse ? CVODE : IDA_OF_ORDER_2;
     m->kept = bough_arena_doubles(arena, (size_t)ode->n);
     for (int k = 0; k < m->n_method; k++) {
         bough_integrator_options own = *options;
-        own.kind = k == ROSENBROCK ? BOUGH_ROSENBROCK : BOUGH_IDA;
-        own.most_steps = m->most_steps[k] = k == ROSENBROCK ? ROSENBROCK_STEPS : ida_steps;
-        if (k == IDA) own.rtol *= tighter;
+        own.kind = kind_of[k];
+        own.most_steps = m->most_steps[k] = k == ROSENBROCK ? ROSENBROCK_STEPS
+                                            : k == CVODE    ? MANY_STEPS
+                                                            : ida_steps;
+        if (k == IDA || k == CVODE) own.rtol *= tighter;
         if (k == IDA_OF_ORDER_2) own.most_order = 2;
         bough_integrator_create(arena, ode, &own, &m->method[k]); // of any size
     }
@@ -94,8 +103,8 @@ static bool try_other(automatic *m, int k, double *t, double t1, double *y) {
 static bool try_next(automatic *m, double *t, double t1, double *y) {
     bool by_ida = m->now != ROSENBROCK;
     if (by_ida) m->wait *= LONGER;
-    m->tried = by_ida ? (m->tried + 1) % METHODS : IDA;
-    if (m->tried == m->now) m->tried = (m->tried + 1) % METHODS;
+    m->tried = by_ida ? (m->tried + 1) % m->n_method : IDA;
+    if (m->tried == m->now) m->tried = (m->tried + 1) % m->n_method;
     bool taken = try_other(m, m->tried, t, t1, y);
     if (m->now == ROSENBROCK) m->lost = m->cost;
     if (!taken) m->taken = 0;
@@ -109,13 +118,14 @@ static void limit_rosenbrock(automatic *m, int most_steps) {
 
 static bool is_due(const automatic *m) {
     if (m->now == ROSENBROCK) return m->cost > 2 * m->lost;
-    return m->n_method == METHODS && m->taken >= m->wait;
+    return m->n_method > IDA_OF_ORDER_2 && m->taken >= m->wait;
 }
 
 static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     automatic *m = self;
     if (restart) {
-        m->now = ROSENBROCK;
+        m->now = m->first;
+        if (m->now == CVODE) m->tried = CVODE; // the Rosenbrock method is next
         m->goes_on = false;
         m->cost = m->lost = 0;
         m->wait = FIRST_WAIT;
@@ -124,12 +134,16 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     if (is_due(m) && try_next(m, t, t1, y)) return bough_ok();
     double begun = *t;
     bough_status status = take(m, m->now, t, t1, !m->goes_on, y);
+    if (!bough_is_ok(&status) && m->now == CVODE) {
+        *t = begun; // that of y
+        status = take(m, ROSENBROCK, t, t1, true, y);
+    }
     if (!bough_is_ok(&status) && m->now == ROSENBROCK) {
         begun = *t;
         status = take(m, IDA, t, t1, true, y);
     }
     if (bough_is_ok(&status)) return status;
-    *t = begun; // that of y
+    *t = begun;
     limit_rosenbrock(m, m->most_steps[IDA]);
     status = take(m, ROSENBROCK, t, t1, true, y);
     m->lost = m->cost;

@@ -225,7 +225,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     r->library = library_of(options->kind);
     r->title = bough_integrator_find(options->kind)->title;
     r->ode = *ode;
-    bool limited = options->kind == BOUGH_IDA && options->most_steps > 0;
+    bool limited = options->kind != BOUGH_ARKODE_ESDIRK && options->most_steps > 0;
     r->most_steps = limited ? options->most_steps : r->library->most_steps;
     r->most_order = options->most_order;
     if (!take(r, options->rtol) || !configure(r)) bough_arena_leave(arena);

@@ -53,6 +53,7 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
                                       .step = solver->step,
                                       .rho = solver->rho,
                                       .coarse = solver->coarse,
+                                      .by_bdf = solver->by_bdf,
                                       .most_steps = solver->most_steps};
 }
 

@@ -303,14 +303,16 @@ static void lengthen_macro_step(double times, bough_scene *to) {
     to->simulation.halves = true;
 }
 
-// The loosest tolerance and the longest step of the bodies' sub-solvers.
+// The loosest tolerance and the longest step of the bodies' sub-solvers, and whether all are by BDF.
 static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     bough_scene_solver all = {0};
     bool limited = true;
+    all.by_bdf = !scene->aero.node && !scene->control.node; // whose samples would start it anew
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         const bough_scene_solver *micro = bough_scene_micro(scene, &scene->body[i]);
         limited = limited && micro->step > 0;
+        all.by_bdf = all.by_bdf && (micro->solver == BOUGH_CVODE_BDF || micro->solver == BOUGH_IDA);
         all.rtol = fmax(all.rtol, micro->rtol);
         all.step = fmax(all.step, micro->step);
     }
@@ -328,6 +330,7 @@ static void make_one_system(bough_scene *to) {
     }
     bough_scene_solver sub_solvers = all_sub_solvers(to);
     x->master.solver = BOUGH_AUTOMATIC;
+    x->master.by_bdf = sub_solvers.by_bdf;
     x->master.rtol = sub_solvers.rtol;
     x->master.step = sub_solvers.step;
     x->coupling.scheme = bough_scheme_index(BOUGH_SCHEME_DEFAULT);

@@ -32,7 +32,7 @@ typedef struct bough_scene_solver {
     double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
     double rho;  // its spectral radius at infinite frequency [-]
     // of companions and further runs; not in a file
-    bool coarse;
+    bool coarse, by_bdf;
     int most_steps; // in a macro step; 0: the method's own limit
 } bough_scene_solver;
 

@@ -203,6 +203,9 @@ TEST(a_coupling_has_a_monolithic_companion) {
     check_near(c->simulation.master.step, 20e-3, 1e-15, 0);
     check_near(c->simulation.master.rtol, 4e-3, 1e-15, 0);
     check_near(bough_coarser_ratio(x.scene, c), 0.5, 1e-12, 0);
+    // it begins as rods by BDF do, but not between samples of the air
+    assert_false(c->simulation.master.by_bdf);
+    assert_true(coarser_of(arena, "apps/beams/buckling.yaml", NULL, NULL).other->simulation.master.by_bdf);
     // fixed steps have an error that the companion's, by tolerance, do not share
     x = coarser_of(arena, runup, "simulation.micro={solver: generalized-alpha, step: 10 ms}", NULL);
     check_near(bough_coarser_ratio(x.scene, x.other), 1, 1e-12, 0);

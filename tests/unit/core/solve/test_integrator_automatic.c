@@ -140,6 +140,20 @@ TEST(what_ida_cannot_follow_is_the_rosenbrock_methods) {
     assert_true(own.work.iterations > 0);
 }
 
+// CVODE takes half the evaluations of slow motion; of fast vibrations it would take many steps.
+TEST(beside_bdf_a_coarse_solution_begins_with_cvode) {
+    for (int k = 0; k < 2; k++) {
+        bough_integrator_options options = {.kind = BOUGH_AUTOMATIC, .rtol = 1e-5, .coarse = true};
+        outcome usual = run_with(&options, k ? 25000 : 20, 50, 0.01);
+        options.by_bdf = true;
+        outcome own = run_with(&options, k ? 25000 : 20, 50, 0.01);
+        print_message("evaluations %ld, %ld; errors %.2e, %.2e\n", own.work.derivatives,
+                      usual.work.derivatives, own.error, usual.error);
+        assert_true((double)own.work.derivatives < (k ? 1.1 : 0.5) * (double)usual.work.derivatives);
+        assert_true(own.error < 2 * usual.error);
+    }
+}
+
 TEST(what_nobody_would_wait_for_ends_with_its_reason) {
     outcome own = run(BOUGH_AUTOMATIC, 3e6, 10);
     assert_int_equal(own.status.code, BOUGH_FAILED);
