@@ -1,9 +1,7 @@
 // The library's law of variable speed as an FMU for tests: inputs generator speed and pitch, outputs torque,
 // pitch, and a pitch for each blade.
-#include "apps/bough/model/fmi3.h"
+#include "tests/cli/sample_fmu.h"
 #include "tests/unit/nrel5mw_control.h"
-
-#include <stdlib.h>
 
 enum { SPEED = 1, PITCH, GAIN, TORQUE, DEMAND, TIME };
 
@@ -13,19 +11,12 @@ typedef struct sample {
     double speed, pitch, time, time_input;
 } sample;
 
-fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
-                                          bool visible, bool logging, bool event_mode, bool early_return,
-                                          const fmi3_reference *intermediate, size_t n_intermediate,
-                                          fmi3_environment environment, fmi3_log *log,
-                                          fmi3_intermediate *update) {
-    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)event_mode;
-    (void)early_return, (void)intermediate, (void)n_intermediate, (void)environment, (void)log, (void)update;
+sample *instantiate(fmi3_string token, fmi3_string resources, fmi3_environment environment, fmi3_log *log) {
+    (void)token, (void)resources, (void)environment, (void)log;
     sample *s = calloc(1, sizeof *s);
     if (s) s->law = nrel5mw_control;
     return s;
 }
-
-void fmi3FreeInstance(fmi3_instance instance) { free(instance); }
 
 fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_tolerance, double tolerance,
                                         double start, bool has_stop, double stop) {
@@ -33,10 +24,6 @@ fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_toleran
     ((sample *)instance)->time = start;
     return has_stop && stop > start ? FMI3_OK : FMI3_ERROR;
 }
-
-fmi3_status fmi3ExitInitializationMode(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
-
-fmi3_status fmi3Terminate(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
 
 fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n, double *value,
                            size_t n_value) {

@@ -1,9 +1,8 @@
 // A small FMU for tests, written against the standard and not against bough: a spring and a damper that
 // follow a velocity, F = −k ∫v dt − c v. The instantiation token names a fault.
-#include "apps/bough/model/fmi3.h"
+#include "tests/cli/sample_fmu.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { VELOCITY = 10, FORCE = 20, STIFFNESS = 30, DAMPING = 31 };
@@ -18,13 +17,7 @@ typedef struct sample {
 
 static const char *const faults[] = {"", "late", "infinite", "early"};
 
-fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
-                                          bool visible, bool logging, bool event_mode, bool early_return,
-                                          const fmi3_reference *intermediate, size_t n_intermediate,
-                                          fmi3_environment environment, fmi3_log *log,
-                                          fmi3_intermediate *update) {
-    (void)name, (void)visible, (void)logging, (void)event_mode, (void)early_return, (void)intermediate;
-    (void)n_intermediate, (void)update;
+sample *instantiate(fmi3_string token, fmi3_string resources, fmi3_environment environment, fmi3_log *log) {
     if (strcmp(token, "refuses") == 0) {
         log(environment, FMI3_ERROR, "all", "no licence");
         return NULL;
@@ -39,18 +32,12 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     return s;
 }
 
-void fmi3FreeInstance(fmi3_instance instance) { free(instance); }
-
 fmi3_status fmi3EnterInitializationMode(fmi3_instance instance, bool has_tolerance, double tolerance,
                                         double start, bool has_stop, double stop) {
     (void)has_tolerance, (void)tolerance;
     ((sample *)instance)->entered = true;
     return start == 0 && has_stop && stop > 0 ? FMI3_OK : FMI3_ERROR;
 }
-
-fmi3_status fmi3ExitInitializationMode(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
-
-fmi3_status fmi3Terminate(fmi3_instance instance) { return instance ? FMI3_OK : FMI3_ERROR; }
 
 fmi3_status fmi3GetFloat64(fmi3_instance instance, const fmi3_reference *reference, size_t n, double *value,
                            size_t n_value) {

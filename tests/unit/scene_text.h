@@ -5,9 +5,7 @@
 #include "apps/bough/scene/scene.h"
 #include "tests/unit/check.h"
 #include "tests/unit/printed.h"
-#include "tests/unit/scratch_name.h"
-
-#include <unistd.h>
+#include "tests/unit/scratch.h"
 
 #define SCENES BOUGH_SOURCE_DIR "/tests/data/scenes/"
 
@@ -29,27 +27,11 @@ static inline fixture read_scene(const char *path, const char *const *sets, int 
     return f;
 }
 
-static inline void write_file(const char *name, const char *text) {
-    FILE *stream = fopen(name, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
-}
+static inline void write_file(const char *name, const char *text) { scratch_write(".", name, text); }
 
-static char directory[SCRATCH_NAME];
+static inline int enter(void **state) { return scratch_make(state) == 0 ? chdir(*state) : -1; }
 
-static inline int enter(void **state) {
-    (void)state;
-    if (mkdtemp(scratch_name(directory)) == NULL || chdir(directory) != 0) return -1;
-    return 0;
-}
-
-static inline int leave(void **state) {
-    (void)state;
-    const char *const names[] = {"s.yaml", "blade.yaml", "aero.yaml", "polars.yaml"};
-    for (int i = 0; i < 4; i++) remove(names[i]);
-    return chdir("/") == 0 && rmdir(directory) == 0 ? 0 : -1;
-}
+static inline int leave(void **state) { return chdir("/") == 0 ? scratch_remove(state) : -1; }
 
 // Reading the scene must fail with exactly these lines; without one it is read.
 static inline fixture refuses(const char *text, const char *lines) {

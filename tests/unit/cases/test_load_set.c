@@ -44,6 +44,12 @@ static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
     return set;
 }
 
+#define check_set(arena, set, cases, group)                                                                  \
+    check_arena(arena);                                                                                      \
+    bough_case cases[CASES];                                                                                 \
+    bough_load_group group[4];                                                                               \
+    bough_study set = made(cases, group)
+
 // A result of a sine of range 2a about m over n periods, sampled 8 times each, every 0.5 s.
 static bough_case_result sine(bough_arena *arena, const bough_study *set, double m, double a, int n) {
     bough_case_result r = bough_case_take(arena, set);
@@ -58,10 +64,7 @@ static bough_case_result sine(bough_arena *arena, const bough_study *set, double
 }
 
 TEST(sums_are_those_by_hand) {
-    check_arena(arena);
-    bough_case cases[CASES];
-    bough_load_group group[4];
-    bough_study set = made(cases, group);
+    check_set(arena, set, cases, group);
     bough_lifetime l = bough_lifetime_take(arena, &set);
     const double amplitude[3] = {1, 3, 5}, mean[3] = {0, 10, 0};
     for (int i = 0; i < 3; i++) {
@@ -93,10 +96,7 @@ TEST(sums_are_those_by_hand) {
 }
 
 TEST(what_is_missing_is_reported) {
-    check_arena(arena);
-    bough_case cases[CASES];
-    bough_load_group group[4];
-    bough_study set = made(cases, group);
+    check_set(arena, set, cases, group);
     bough_lifetime l = bough_lifetime_take(arena, &set);
     bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
     failed.outcome = bough_fail(BOUGH_FAILED, "broke");
@@ -113,10 +113,7 @@ TEST(what_is_missing_is_reported) {
 
 // A message may fill its buffer.
 TEST_IN_FOLDER(the_longest_message_is_kept) {
-    check_arena(arena);
-    bough_case cases[CASES];
-    bough_load_group group[4];
-    bough_study set = made(cases, group);
+    check_set(arena, set, cases, group);
     bough_case_result r = sine(arena, &set, 0, 1, 5), again = r;
     char longest[BOUGH_MESSAGE];
     memset(longest, 'm', sizeof longest - 1);
@@ -131,10 +128,7 @@ TEST_IN_FOLDER(the_longest_message_is_kept) {
 
 // Companions of the first two cases: an equivalent load that is larger by its error for each.
 TEST(errors_are_those_of_companions) {
-    check_arena(arena);
-    bough_case cases[CASES];
-    bough_load_group group[4];
-    bough_study set = made(cases, group);
+    check_set(arena, set, cases, group);
     bough_lifetime l = bough_lifetime_take(arena, &set);
     assert_true(isnan(bough_lifetime_equivalent_error(&l, 0, 0)));
     const double amplitude[3] = {1, 3, 5}, larger[2] = {1.01, 1.02};
@@ -202,10 +196,7 @@ TEST(companions_are_spread_by_number) {
 // A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
 // there is at that moment have no factor.
 TEST(factors_are_of_loads_and_on_the_safe_side) {
-    check_arena(arena);
-    bough_case cases[CASES];
-    bough_load_group group[4];
-    bough_study set = made(cases, group);
+    check_set(arena, set, cases, group);
     for (int sign = -1; sign <= 1; sign += 2) {
         bough_lifetime l = bough_lifetime_take(arena, &set);
         bough_case_result r = sine(arena, &set, 10 * sign, 3, 20);

@@ -42,13 +42,6 @@ static int find(const outcome *o, const char *name) {
     return i;
 }
 
-static double true_error(const outcome *o, const outcome *truth, int channel, int steps) {
-    double error = 0;
-    for (int k = 0; k < steps; k++)
-        error = fmax(error, fabs(o->value[k][channel] - truth->value[k][channel]));
-    return error;
-}
-
 // A run to its end.
 #define check_ended_run(arena, r, scene, sets)                                                               \
     check_run(arena, r, scene, sets);                                                                        \
@@ -60,28 +53,40 @@ static bough_error_shares find_shares(bough_arena *arena, bough_run *r) {
     return shares;
 }
 
+typedef struct beside {
+    bough_run r;
+    int n; // channels
+    double error[8], estimate[8];
+} beside;
+
 // A run over so many steps (0: to its end) beside one whose macro steps are a part of its own: what its
 // channels (up to NULL) differ by, and the run's estimates.
-static void run_beside(bough_arena *arena, const char *scene, const char *const *sets,
-                       const char *const *truth_sets, int steps, bough_run *r, const char *const *channel,
-                       double *error, double *estimate) {
-    bough_run truth;
+static beside *run_beside(bough_arena *arena, const char *scene, const char *const *sets,
+                          const char *const *truth_sets, int steps, const char *const *channel) {
+    beside *b = bough_arena_take(arena, sizeof *b);
+    bough_run truth, *r = &b->r;
     check_ok(bough_run_create(arena, scene_read(arena, scene, sets), r));
     check_ok(bough_run_create(arena, scene_read(arena, scene, truth_sets), &truth));
-    for (int w = 0; channel[w]; w++) error[w] = 0;
     for (int k = 0; steps > 0 ? k < steps : !bough_run_done(r); k++) {
         check_ok(bough_run_step(r));
         double time = r->simulation->master->time - 1e-9;
         while (truth.simulation->master->time < time) check_ok(bough_run_step(&truth));
         for (int w = 0; channel[w]; w++) {
             int i = bough_channels_find(&r->channels, channel[w]);
-            estimate[w] = r->companion->error[i];
-            error[w] = fmax(error[w], fabs(bough_run_values(r)[i] - bough_run_values(&truth)[i]));
+            b->estimate[w] = r->companion->error[i];
+            b->error[w] = fmax(b->error[w], fabs(bough_run_values(r)[i] - bough_run_values(&truth)[i]));
         }
     }
-    for (int w = 0; channel[w]; w++)
-        print_message("%s: true %.2g, estimate %.2g: %.2f\n", channel[w], error[w], estimate[w],
-                      estimate[w] / error[w]);
+    for (; channel[b->n]; b->n++)
+        print_message("%s: true %.2g, estimate %.2g: %.2f\n", channel[b->n], b->error[b->n],
+                      b->estimate[b->n], b->estimate[b->n] / b->error[b->n]);
+    return b;
+}
+
+// Each estimate over its error lies between these.
+static void check_estimates(const beside *b, double least, double most) {
+    for (int w = 0; w < b->n; w++)
+        assert_true(b->estimate[w] > least * b->error[w] && b->estimate[w] < most * b->error[w]);
 }
 
 // The whole error of motion, by mesh, air, steps and coupling, for two schemes.
@@ -90,28 +95,18 @@ TEST(the_whole_error_is_estimated) {
         "simulation.duration=2 s", "simulation.coupling={scheme: monolithic}",
         "simulation.master={solver: rosenbrock, step: 5 ms, rtol: 1e-6}", "simulation.macro_step=5 ms",
         "simulation.error_estimate=none", "bodies[3-5].rod.segments=72", "aero.rate=200");
-    outcome *truth = run_for("apps/turbine/runup.yaml", STEPS, truth_sets);
-    assert_false(truth->compared);
     static const char *const coupling[] = {"simulation.coupling={scheme: ramp, theta: auto}",
                                            "simulation.coupling={scheme: monolithic}"};
-    static const char *const watched[] = {"RotSpeed", "TipDxb1",  "TipDyb1",  "TwstDefl1",
-                                          "RootMyb1", "RootMxb1", "RootFyb1", "RootFzb1"};
+    static const char *const watched[] = {"RotSpeed", "TipDxb1",  "TipDyb1",  "TwstDefl1", "RootMyb1",
+                                          "RootMxb1", "RootFyb1", "RootFzb1", NULL};
     for (int c = 0; c < 2; c++) {
         const char *const sets[] = {"simulation.duration=2 s", coupling[c],
                                     "simulation.master={solver: rosenbrock, step: 10 ms, rtol: 3e-4}", NULL};
-        outcome *o = run_for("apps/turbine/runup.yaml", STEPS, sets);
-        assert_true(o->compared);
-        for (size_t w = 0; w < sizeof watched / sizeof *watched; w++) {
-            int i = find(o, watched[w]);
-            double error = true_error(o, truth, i, STEPS);
-            print_message("%s: true %.2g, estimate %.2g: %.2f\n", watched[w], error, o->error[i],
-                          o->error[i] / error);
-            bool force = strncmp(watched[w], "RootF", 5) == 0 && c == 1;
-            assert_true(o->error[i] > error / (force ? 2 : 3) && o->error[i] < 5 * error);
-        }
-        free(o);
+        check_arena(arena);
+        beside *b = run_beside(arena, "apps/turbine/runup.yaml", sets, truth_sets, 0, watched);
+        check_estimates(b, 1 / 3., 5);
+        for (int w = 6; w < 8 && c == 1; w++) assert_true(b->estimate[w] > b->error[w] / 2); // RootF
     }
-    free(truth);
 }
 
 // Six segments under air at half the rate lose the solution. With either as in the run they keep it, and
@@ -154,8 +149,9 @@ TEST(the_last_half_step_has_shares) {
 
 // A short run whose steps are as long as its macro step: half of them would be the companion's own steps.
 TEST(steps_of_a_macro_step_have_an_error) {
+    static const char scene[] = "apps/mechanisms/pendulum.yaml";
     const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
-    outcome *truth = run_for("apps/mechanisms/pendulum.yaml", STEPS, truth_sets);
+    static const char *const channel[] = {"bobPos", "bobVel", NULL};
     // a torque of no weight, whose corners are as close as the steps, and twice as far apart
     char corners[2][40 * STEPS];
     for (int i = 0; i < 2; i++) {
@@ -181,15 +177,10 @@ TEST(steps_of_a_macro_step_have_an_error) {
         {"simulation.master={solver: rosenbrock, rtol: 0.02}", corners[0], "simulation.macro_step=80 ms"}};
     for (int k = 0; k < 9; k++) {
         const char *const sets[] = {"simulation.macro_step=20 ms", run[k][0], run[k][1], run[k][2], NULL};
-        outcome *o = run_for("apps/mechanisms/pendulum.yaml", STEPS, sets);
-        for (int i = 0; i < 2; i++) {
-            double error = true_error(o, truth, i, STEPS);
-            print_message("%s: true %.2g, estimate %.2g\n", o->name[i], error, o->error[i]);
-            assert_true(o->error[i] > error / 2 && o->error[i] < 4 * error);
-        }
-        free(o);
+        check_arena(arena);
+        check_estimates(run_beside(arena, scene, sets, truth_sets, k == 8 ? STEPS / 4 : STEPS, channel), 0.5,
+                        4);
     }
-    free(truth);
 }
 
 // Nine corners within a millisecond are one: the steps after them are as long as before.
@@ -222,10 +213,7 @@ TEST(a_loose_tolerance_has_an_error) {
                                           "simulation.error_estimate=none", run[k].load, NULL};
         check_arena(arena);
         const char *const channel[] = {run[k].channel, NULL};
-        bough_run r;
-        double error, estimate;
-        run_beside(arena, run[k].scene, sets, truth_sets, 0, &r, channel, &error, &estimate);
-        assert_true(estimate > error / 2 && estimate < 4 * error);
+        check_estimates(run_beside(arena, run[k].scene, sets, truth_sets, 0, channel), 0.5, 4);
     }
 }
 
@@ -294,12 +282,9 @@ TEST(an_error_that_grows_is_followed) {
     static const char *const truth[] = {"simulation.error_estimate=none",
                                         "simulation.master={solver: rosenbrock, rtol: 1e-6, step: 1 ms}",
                                         NULL};
+    static const char *const channel[] = {"rodTipZ", NULL};
     check_arena(arena);
-    bough_run r;
-    double error, estimate;
-    run_beside(arena, "tests/data/scenes/let-go.yaml", sets, truth, 0, &r,
-               (const char *const[]){"rodTipZ", NULL}, &error, &estimate);
-    assert_true(estimate > 0.7 * error && estimate < 1.5 * error);
+    check_estimates(run_beside(arena, "tests/data/scenes/let-go.yaml", sets, truth, 0, channel), 0.7, 1.5);
 }
 
 // Where its work ends before, the error that grew grows on.
@@ -321,12 +306,9 @@ TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
                                         "simulation.error_estimate=none", NULL};
     static const char *const channel[] = {"barTipX", "barSpn1TDx", "barSpn1RDy", NULL};
     check_arena(arena);
-    bough_run r;
-    double error[3], estimate[3];
-    run_beside(arena, "tests/data/scenes/struck-bar.yaml", no_sets, truth, 0, &r, channel, error, estimate);
-    assert_int_equal(r.companion->coarser.simulation->beam[0].def.n_segment, 20);
-    for (int w = 0; channel[w]; w++)
-        assert_true(estimate[w] > 0.7 * error[w] && estimate[w] < 1.5 * error[w]);
+    beside *b = run_beside(arena, "tests/data/scenes/struck-bar.yaml", no_sets, truth, 0, channel);
+    assert_int_equal(b->r.companion->coarser.simulation->beam[0].def.n_segment, 20);
+    check_estimates(b, 0.7, 1.5);
 }
 
 // It stands beside sub-solvers with a loose tolerance, whatever that of the master is, and beside a coupling
@@ -372,23 +354,21 @@ TEST(what_errs_little_is_not_followed) {
 // Before a run fails by its steps, finer ones say what these err by: more closely than the companion does.
 TEST(finer_steps_prove_an_error_in_time) {
     static const char scene[] = "apps/mechanisms/pendulum.yaml";
-    const char *const truth_sets[] = {"simulation.macro_step=20 ms", "simulation.error_estimate=none", NULL};
+    const char *const truth_sets[] = {"simulation.macro_step=10 ms", "simulation.error_estimate=none", NULL};
     const char *const sets[] = {"simulation.duration=2 s", "simulation.macro_step=10 ms",
                                 "simulation.error_bound=1e-6",
                                 "simulation.master={solver: rosenbrock, rtol: 4e-3}", NULL};
-    outcome *truth = run_for(scene, STEPS, truth_sets), *o = run_for(scene, STEPS, sets);
-    check_ended_run(arena, r, scene, sets);
-    bough_error_shares shares = find_shares(arena, &r);
-    for (int i = 0; i < 2; i++) {
-        double error = true_error(o, truth, i, STEPS), proved = r.companion->error[i];
-        print_message("%s: true %.3g, companion %.3g, finer steps %.3g\n", o->name[i], error, o->error[i],
-                      proved);
-        assert_true(o->error[i] > 1.05 * proved);
-        check_near(proved, error, 0.2, 0);
+    static const char *const channel[] = {"bobPos", "bobVel", NULL};
+    check_arena(arena);
+    beside *b = run_beside(arena, scene, sets, truth_sets, 0, channel);
+    bough_error_shares shares = find_shares(arena, &b->r);
+    for (int i = 0; i < 2; i++) { // the first two channels
+        double proved = b->r.companion->error[i];
+        print_message("finer steps %.3g\n", proved);
+        assert_true(b->estimate[i] > 1.05 * proved);
+        check_near(proved, b->error[i], 0.2, 0);
         check_near(shares.share[BOUGH_SHARE_TIME].largest[i], proved, 1e-9, 0);
     }
-    free(o);
-    free(truth);
 }
 
 static int asked;
@@ -429,15 +409,14 @@ TEST(finer_samples_prove_an_error_of_the_air) {
                 "simulation.error_estimate=companion", "simulation.error_shares=true", "aero.rate=50");
     static const char *const channel[] = {"TwstDefl3", NULL};
     check_arena(arena);
-    bough_run r;
     char warning[BOUGH_ERROR_WARNING];
-    double error, estimate;
-    run_beside(arena, scene, sets, truth_sets, 0, &r, channel, &error, &estimate);
-    bough_error_shares shares = find_shares(arena, &r);
-    double air = shares.share[BOUGH_SHARE_AIR].largest[bough_channels_find(&r.channels, channel[0])];
-    print_message("TwstDefl3: by the air %.2g deg, estimate %.2g\n", error, air);
-    assert_true(air > error / 3 && air < 3 * error);
-    check_ok(bough_error_judge(arena, r.companion, NULL, 0.05, &shares, warning));
+    beside *b = run_beside(arena, scene, sets, truth_sets, 0, channel);
+    bough_run *r = &b->r;
+    bough_error_shares shares = find_shares(arena, r);
+    double air = shares.share[BOUGH_SHARE_AIR].largest[bough_channels_find(&r->channels, channel[0])];
+    print_message("TwstDefl3: by the air %.2g deg, estimate %.2g\n", b->error[0], air);
+    assert_true(air > b->error[0] / 3 && air < 3 * b->error[0]);
+    check_ok(bough_error_judge(arena, r->companion, NULL, 0.05, &shares, warning));
     assert_non_null(strstr(warning, "cause: the mesh"));
 }
 
@@ -467,11 +446,8 @@ TEST(samples_that_resolve_no_vibration_err_by_the_whole_difference) {
     const char *const truth_sets[] = {OPERATION, OVERSPEED, FOUR_TIMES, NULL};
     const char *const sets[] = {OPERATION, OVERSPEED, "simulation.error_estimate=companion", NULL};
     static const char *const channel[] = {"GenSpeed", "RtAeroPwr", "RtAeroMxh", "RotPwr", "blade2Trq", NULL};
-    double error[5], estimate[5];
-    bough_run r;
     check_arena(arena);
-    run_beside(arena, operation, sets, truth_sets, 80, &r, channel, error, estimate);
-    for (int w = 0; w < 5; w++) assert_true(estimate[w] > error[w] / 3 && estimate[w] < 4 * error[w]);
+    check_estimates(run_beside(arena, operation, sets, truth_sets, 80, channel), 1 / 3., 4);
 }
 
 // In the first samples the speed of the blades' vibrations is not resolved.
@@ -479,11 +455,8 @@ TEST(samples_of_the_start_have_an_error) {
     const char *const truth_sets[] = {OPERATION, FOUR_TIMES, NULL};
     const char *const sets[] = {OPERATION, "simulation.error_estimate=companion", NULL};
     static const char *const channel[] = {"RtVAvgxh", "RtVAvgyh", "RtVAvgzh", "RtTSR", NULL};
-    double error[4], estimate[4];
-    bough_run r;
     check_arena(arena);
-    run_beside(arena, operation, sets, truth_sets, 10, &r, channel, error, estimate);
-    for (int w = 0; w < 4; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 3 * error[w]);
+    check_estimates(run_beside(arena, operation, sets, truth_sets, 10, channel), 0.8, 3);
 }
 
 #define SLOW_PITCH                                                                                           \
@@ -505,16 +478,17 @@ TEST(a_companion_whose_blades_flutter_is_replaced) {
         sets_of(SLOW_PITCH, solver, "bodies[3-5].rod.segments=16", "simulation.macro_step=20 ms",
                 "simulation.error_estimate=companion", "simulation.error_bound=0.002", "aero.rate=50");
     check_arena(arena);
-    bough_run r;
-    double error[2], before[2];
-    run_beside(arena, operation, sets, truth_sets, 0, &r, watched, error, before);
-    assert_true(r.companion->flutters);
-    find_shares(arena, &r);
+    beside *b = run_beside(arena, operation, sets, truth_sets, 0, watched);
+    bough_run *r = &b->r;
+    assert_true(r->companion->flutters);
+    find_shares(arena, r);
     for (int w = 0; w < 2; w++) {
-        double estimate = r.companion->error[bough_channels_find(&r.channels, watched[w])];
-        print_message("%s: replaced %.2g\n", watched[w], estimate);
-        assert_true(estimate > 0.8 * error[w] && estimate < 10 * error[w] && estimate < 0.5 * before[w]);
+        double before = b->estimate[w];
+        b->estimate[w] = r->companion->error[bough_channels_find(&r->channels, watched[w])];
+        print_message("%s: replaced %.2g\n", watched[w], b->estimate[w]);
+        assert_true(b->estimate[w] < 0.5 * before);
     }
+    check_estimates(b, 0.8, 10);
 }
 
 // An iteration that does not converge goes on where errors are known, and a copy of such a run does, too.
@@ -619,17 +593,10 @@ TEST(a_jump_of_the_air_has_an_error) {
         const char *const sets[] = {"simulation.duration=1.02 s", cases[n].jump, cases[n].hold, NULL};
         const char *const *truth_sets = sets_of(sets[0], sets[1], "simulation.macro_step=2.5 ms",
                                                 "aero.rate=400 Hz", "simulation.error_estimate=none");
-        outcome *truth = run_for("apps/turbine/runup-stages.yaml", 51, truth_sets);
-        outcome *o = run_for("apps/turbine/runup-stages.yaml", 51, sets);
-        const char *const names[] = {"TwstDefl1", "OoPDefl1", "RotSpeed"};
-        for (int k = 0; k < 3; k++) {
-            int i = find(o, names[k]);
-            double error = true_error(o, truth, i, 51);
-            print_message("%s, %s: true %.2g, estimate %.2g\n", cases[n].jump, names[k], error, o->error[i]);
-            assert_true(o->error[i] > 0.4 * error && o->error[i] < 4 * error);
-        }
-        free(o);
-        free(truth);
+        static const char *const channel[] = {"TwstDefl1", "OoPDefl1", "RotSpeed", NULL};
+        check_arena(arena);
+        check_estimates(run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth_sets, 51, channel),
+                        0.4, 4);
     }
 }
 
@@ -655,39 +622,32 @@ TEST(beside_a_finer_mesh_held_loads_are_sampled_in_shorter_steps) {
     "simulation.duration=1.02 s", "aero.hold=constant",                                                      \
         "aero.wind={kind: uniform, table: {times: [0, 1.02], speeds: [6, 12]}}",                             \
         "loads=[{joint: hub, torque: 1, ramp: [0.113 s, 0.113 s]}]"
+#define FINE_AIR "simulation.macro_step=2.5 ms", "aero.rate=400", "simulation.error_estimate=none"
     static const char *const sets[] = {HELD_LOADS, "bodies[3-5].rod.segments=8", NULL};
-    static const char *const truth[] = {
-        HELD_LOADS,      "bodies[3-5].rod.segments=16",    "simulation.macro_step=2.5 ms",
-        "aero.rate=400", "simulation.error_estimate=none", NULL};
+    static const char *const truth[] = {HELD_LOADS, "bodies[3-5].rod.segments=16", FINE_AIR, NULL};
     static const char *const channel[] = {"RotSpeed", "TipDxb1", "RootMyb1", NULL};
-    bough_run r;
-    double error[3], estimate[3];
     check_arena(arena);
-    run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth, 11, &r, channel, error, estimate);
-    const bough_companion *c = r.companion;
+    beside *b = run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth, 11, channel);
+    const bough_companion *c = b->r.companion;
     check_near(c->coarser.simulation->scene->aero.rate, 100, 1e-12, 0);
-    check_near(c->coarser.simulation->master->time, r.simulation->master->time, 1e-12, 0);
+    check_near(c->coarser.simulation->master->time, b->r.simulation->master->time, 1e-12, 0);
     assert_int_equal(c->compared, 11);
-    assert_true(c->error[bough_channels_find(&r.channels, "RtVAvgxh")] < 0.02);
-    for (int w = 0; w < 3; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 2 * error[w]);
+    assert_true(c->error[bough_channels_find(&b->r.channels, "RtVAvgxh")] < 0.02);
+    check_estimates(b, 0.8, 2);
 }
 
 // An error of order 1 is the whole difference to half the rate; what the mesh and the steps err by is not.
 TEST(held_loads_err_by_the_whole_difference) {
     static const char *const sets[] = {HELD_LOADS, "bodies[3-5].rod.segments=24", NULL};
-    static const char *const truth[] = {
-        HELD_LOADS,      "bodies[3-5].rod.segments=24",    "simulation.macro_step=2.5 ms",
-        "aero.rate=400", "simulation.error_estimate=none", NULL};
+    static const char *const truth[] = {HELD_LOADS, "bodies[3-5].rod.segments=24", FINE_AIR, NULL};
     static const char *const channel[] = {"RotSpeed", "TipDxb1", "RootMyb1", NULL};
-    bough_run r;
-    double error[3], estimate[3];
     check_arena(arena);
-    run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth, 11, &r, channel, error, estimate);
-    for (int w = 0; w < 3; w++) assert_true(estimate[w] > 0.8 * error[w] && estimate[w] < 2 * error[w]);
-    bough_error_shares shares = find_shares(arena, &r);
+    beside *b = run_beside(arena, "apps/turbine/runup-stages.yaml", sets, truth, 11, channel);
+    check_estimates(b, 0.8, 2);
+    bough_error_shares shares = find_shares(arena, &b->r);
     const bough_error_share *s = shares.share;
     for (int w = 0; w < 3; w++) {
-        int i = bough_channels_find(&r.channels, channel[w]);
+        int i = bough_channels_find(&b->r.channels, channel[w]);
         assert_true(s[BOUGH_SHARE_AIR].others[i] <
                     1.5 * (s[BOUGH_SHARE_MESH].largest[i] + s[BOUGH_SHARE_TIME].largest[i]));
     }
@@ -695,13 +655,9 @@ TEST(held_loads_err_by_the_whole_difference) {
 
 // Both solutions notice a contact by chance, and its velocities are compared only in halves of macro steps.
 TEST(a_contact_has_its_error) {
-    static const char *const sets[] = {NULL};
     static const char *const truth[] = {"simulation.error_estimate=none", "simulation.macro_step=2.5 ms",
                                         "simulation.master={solver: ida, rtol: 1e-8}", NULL};
     static const char *const channel[] = {"ballVel", NULL};
-    bough_run r;
-    double error, estimate;
     check_arena(arena);
-    run_beside(arena, "tests/data/scenes/ball.yaml", sets, truth, 0, &r, channel, &error, &estimate);
-    assert_true(estimate > error / 3 && estimate < 10 * error);
+    check_estimates(run_beside(arena, "tests/data/scenes/ball.yaml", no_sets, truth, 0, channel), 1 / 3., 10);
 }

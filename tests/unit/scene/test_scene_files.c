@@ -2,7 +2,6 @@
 // changes with each of them.
 #include "apps/bough/scene/scene_files.h"
 #include "tests/unit/scene_text.h"
-#include "tests/unit/scratch.h"
 
 #include <sys/stat.h>
 
@@ -46,7 +45,7 @@ static const struct {
 enum { FILES = sizeof files / sizeof *files };
 
 static int enter_files(void **state) {
-    if (scratch_make(state) != 0 || chdir(*state) != 0) return -1;
+    if (enter(state) != 0) return -1;
     const char *const folders[] = {"damper", "damper/resources", "control", "tables"};
     for (int k = 0; k < 4; k++) {
         if (mkdir(folders[k], 0755) != 0) return -1;
@@ -55,8 +54,6 @@ static int enter_files(void **state) {
     write_file("tables/Ct.txt", "named by nobody beside the input\n");
     return 0;
 }
-
-static int leave_files(void **state) { return chdir("/") == 0 ? scratch_remove(state) : -1; }
 
 static uint64_t fingerprint(const bough_scene *s, bough_arena *arena) {
     uint64_t sum = BOUGH_FINGERPRINT_START;
@@ -153,7 +150,6 @@ TEST(scenes_link_shared_stations_to_polars_of_their_own) {
     write_file("two.yaml", two_polars);
     const bough_scene *a = read_shared(&shared, "aero.polars=polars.yaml", &errors);
     const bough_scene *b = read_shared(&shared, "aero.polars=two.yaml", &errors);
-    remove("two.yaml");
     assert_int_equal(a->aero.blade.station[1].def.polar, 0);
     assert_int_equal(b->aero.blade.station[1].def.polar, 1);
 }
@@ -170,4 +166,4 @@ TEST(every_scene_reports_the_errors_of_a_shared_file) {
     write_file("rod.yaml", files[1].text);
 }
 
-GROUP(enter_files, leave_files)
+GROUP(enter_files, leave)
