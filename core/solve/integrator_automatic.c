@@ -6,7 +6,7 @@
 // method goes on with as many steps: it damps what vibrates fast, and its steps then grow.
 // Orders above 2 are unstable near the imaginary axis. Where vibrations are small beside a loose tolerance,
 // this limits their steps, and not the error. So a coarse solution also has IDA of order 2, at its whole
-// tolerance. One beside a run whose rods are by BDF begins with CVODE, until a macro step takes many steps.
+// tolerance. Beside a run whose rods are by BDF it begins with CVODE, until a macro step takes many steps.
 // The methods that it does not use are tried after 2 macro steps of IDA or CVODE, 6 more, 18 more, ...
 #include "core/solve/integrator.h"
 
@@ -16,12 +16,12 @@ static const bough_integrator_kind kind_of[METHODS] = {BOUGH_ROSENBROCK, BOUGH_I
                                                        BOUGH_CVODE_BDF};
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
-// In a macro step: beside as many the start of IDA costs little, and so many end CVODE.
+// In a macro step: the start of IDA costs little beside as many, and CVODE takes no more.
 enum { MANY_STEPS = 100 };
 enum { FIRST_WAIT = 2, LONGER = 3 }; // macro steps before the first trial; factor of each further wait
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
-static const double tighter =
-    0.1; // tolerance of IDA and CVODE, relative: their errors add up over many short steps
+// Tolerance of IDA and CVODE, relative: their errors add up over many short steps.
+static const double tighter = 0.1;
 static const double cheaper = 0.7; // cost of a method that takes over from IDA, relative
 
 typedef struct automatic {

@@ -387,7 +387,7 @@ static void compare(bough_companion *c) {
     bool held = rarer ? !row->sampled : c->run->master->at_event;
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
-    // where steps notice a contact is chance, in longer ones as well: both solutions err alike
+    // steps of any length meet a contact at a chance time, so that both solutions err alike
     if (c->ratio < 1 && strikes(c->run)) c->ratio = 1;
     double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
     c->flutters = c->flutters || flutters(missed_air(c->run), row->missed_air);
