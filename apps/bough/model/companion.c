@@ -3,6 +3,7 @@
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/simulation.h"
+#include "apps/bough/model/validity.h"
 #include "cosim/scheme.h"
 
 #include <limits.h>
@@ -227,7 +228,8 @@ static bool is_large(const bough_companion *c, int i, double error) {
 static const double most_growth = 2; // of an error since the finer solution ended
 
 // Errors that grew in the second half of what the finer solution followed, until it would have taken too much
-// work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays.
+// work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays. At
+// twice their size they may still grow.
 static void extrapolate(bough_companion *c) {
     const bough_finer *f = &c->finer;
     double followed = f->left - f->from, t = c->run->master->time;
@@ -236,6 +238,7 @@ static void extrapolate(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         if (c->grown[i] < f->left - followed / 2 || !is_large(c, i, c->least[i])) continue;
         c->error[i] = fmax(c->error[i], fmin(times * c->least[i], bough_error_range(c, i) / 2));
+        if (times == most_growth) bough_validity_pass_fast(c->run);
     }
 }
 

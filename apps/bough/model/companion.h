@@ -73,8 +73,8 @@ typedef struct bough_other_run {
 bough_status bough_other_run_build(bough_arena *arena, const bough_simulation *run, int parts,
                                    bough_other_run *other);
 
-// Evaluations and factorisations of all members so far, each weighted by the states of the member, the
-// equations of closed loops and a constant. Nearly proportional to CPU time, and the same on every machine.
+// Work so far: the CPU time that the evaluations and factorisations of all members take on a processor of
+// 2023, by their number and size [µs]. The same on every machine.
 double bough_simulation_work(const bough_simulation *s);
 
 // The same for a step of the Rosenbrock method, without tangents.

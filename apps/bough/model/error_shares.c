@@ -18,7 +18,7 @@ static void unknown(bough_error_share *share, const char *why) {
 
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
 static const double most_alone = 2; // the same by one that is coarser
-static const double little = 3e6;   // work of a few milliseconds
+static const double little = 1e4;   // µs more
 
 typedef struct finding {
     bough_companion *companion;

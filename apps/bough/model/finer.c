@@ -3,10 +3,10 @@
 
 enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
 
-// Its largest work, relative to that of run and companion, extrapolated to the end; and some milliseconds
-// more, fewer in its first macro step.
+// Its largest work, relative to that of run and companion, extrapolated to the end; and as many microseconds
+// more, in its first macro step and later.
 static const double most_work = 0.1;
-static const double little = 3e6, little_at_first = 1e6;
+static const double little_at_first = 2000, little = 3000;
 
 // Steps in its first macro step that are never too much work.
 static const double least_steps = 250;
@@ -97,10 +97,11 @@ void bough_finer_go_on(bough_finer *f, const bough_master *run) {
     f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
 }
 
-// Whether it has failed by more than the most steps, and the run passes over the same vibrations: it takes
-// less than a quarter of the steps, of which a hundredth of its tolerance needs a few times as many.
-static bool gave_up(const bough_status *status, int most, long steps, long by_run) {
-    return status->code == BOUGH_FAILED && steps >= most / 5 && 4 * by_run < most;
+// Whether it has failed by more than the most steps that its work allows, and the run may pass over the same
+// vibrations: it takes less than a quarter of the most that the finer solution may ever take.
+static bool gave_up(const bough_finer *f, int allowed, long steps, long by_run) {
+    int most = f->other.simulation->scene->simulation.master.most_steps;
+    return f->status.code == BOUGH_FAILED && steps >= allowed / 5 && 4 * by_run < most;
 }
 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
@@ -119,7 +120,7 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     while (bough_is_ok(&f->status) && own->master->time < run->master->time)
         f->status = bough_other_run_step(&f->other, run);
     f->work += bough_simulation_work(own);
-    if (gave_up(&f->status, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
+    if (gave_up(f, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
     f->follows = bough_is_ok(&f->status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;

@@ -81,7 +81,7 @@ static const struct {
          "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
     [BOUGH_LIMIT_FAST] =
         {"fast_vibrations",
-         "vibrations that take some hundred steps in a macro step of %.4g s may be missing from the results and from the error estimate, above all in forces and velocities: damp them, or take a smaller rtol"},
+         "vibrations much faster than the macro step of %.4g s may be missing from the results or err by more than the estimate, above all in forces and velocities: damp them, or take a smaller rtol"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }

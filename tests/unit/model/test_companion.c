@@ -250,7 +250,7 @@ TEST(a_vibration_that_both_lose_is_an_error) {
         }
         print_message("error %.2g of %.2g m, estimate %.2g\n", error, s, o->error[i]);
         assert_true(error > s / 3);
-        assert_true(o->error[i] > error / 2 && o->error[i] < 2 * error);
+        assert_true(o->error[i] > error / 2 && o->error[i] < 3 * error);
         free(o);
     }
 }
@@ -287,7 +287,7 @@ TEST(an_error_that_grows_is_followed) {
     check_estimates(run_beside(arena, "tests/data/scenes/let-go.yaml", sets, truth, 0, channel), 0.7, 1.5);
 }
 
-// Where its work ends before, the error that grew grows on.
+// Where its work ends before, the error that grew grows on, and the run says that it may err by more.
 TEST(an_error_that_grew_grows_on) {
     check_run(arena, r, "tests/data/scenes/let-go.yaml",
               sets_of("simulation.coupling={scheme: iterated}",
@@ -298,6 +298,7 @@ TEST(an_error_that_grew_grows_on) {
     r.companion->finer.work = HUGE_VAL;
     while (!bough_run_done(&r)) check_ok(bough_run_step(&r));
     assert_true(r.companion->error[tip] > 1.4 * grown);
+    assert_true(r.simulation->validity->limit[BOUGH_LIMIT_FAST].passed);
 }
 
 // A blow excites bending waves that half as many segments do not resolve: the companion has twice as many.
@@ -336,7 +337,7 @@ TEST(the_finer_solution_takes_little_work) {
         check_ended_run(arena, r, scene[k], no_sets);
         double finer = r.companion->finer.work, both = bough_companion_work(r.companion);
         print_message("work: %.2g, of run and companion %.2g\n", finer, both);
-        assert_true(finer > 0 && finer < 0.1 * both + 3e6);
+        assert_true(finer > 0 && finer < 0.1 * both + 3000);
         assert_true(r.simulation->validity->limit[BOUGH_LIMIT_FAST].passed);
     }
 }
