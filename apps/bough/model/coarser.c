@@ -175,15 +175,15 @@ bool bough_coarser_steps_alone(const bough_scene *scene) {
 }
 
 // A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
-// vibrations stay whose phases and amplitudes err at a lower order; a tenth beside a still larger tolerance
-// of rigid bodies. What a coupling errs by is the whole difference to a solution without one: all of it by a
-// coupling that is explicit, repeats steps or is of order 1, as any is across a jump within a macro step, or
-// of fixed steps; half otherwise, where steps and mesh take part.
+// vibrations stay whose phases and amplitudes err at a lower order; three tenths beside a still larger
+// tolerance of rigid bodies. What a coupling errs by is the whole difference to a solution without one: all
+// of it by a coupling that is explicit, repeats steps or is of order 1, as any is across a jump within a
+// macro step, or of fixed steps; half otherwise, where steps and mesh take part.
 static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     if (has_fixed_steps(scene)) return 1;
-    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.1 : 0.4;
+    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.3 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
                  bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
@@ -361,6 +361,7 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
         return;
     }
     looser by = looser_of(scene);
+    if (bough_coarser_steps_alone(scene) && bough_scene_suits_radau(scene)) x->master.solver = BOUGH_RADAU5;
     x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
     x->master.step *= by.step;
     if (x->master.step == 0 && by.step < by.macro_step) x->master.step = by.step * x->macro_step;

@@ -580,3 +580,7 @@ void bough_scene_help(FILE *stream);
 
 // Writes the same as JSON Schema.
 void bough_scene_json_schema(FILE *stream);
+
+// Whether Radau IIA is the cheapest method for it: a few rigid bodies whose loads are not sampled
+// (scene_accuracy.c).
+bool bough_scene_suits_radau(const bough_scene *scene);

@@ -65,14 +65,21 @@ TEST(a_longest_step_follows_a_second_mode) {
 }
 
 #define FREE(name) "  - {name: " name ", fidelity: rigid, mass: 1, joint: {kind: free, parent: ground}}\n"
+#define HINGED(name)                                                                                         \
+    "  - {name: " name ", fidelity: rigid, mass: 1, joint: {kind: revolute, axis: y, parent: ground}}\n"
 #define FIVE_FREE "simulation: {duration: 1 s}\nbodies:\n" FREE("a") FREE("b") FREE("c") FREE("d") FREE("e")
 
-// Dense matrices suit few states.
-TEST(few_free_bodies_are_solved_by_radau) {
+// Dense matrices suit few states, and long steps loads that are not sampled.
+TEST(few_rigid_bodies_are_solved_by_radau) {
     fixture f = accepts(FIVE_FREE);
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
     f = accepts(FIVE_FREE FREE("f"));
     assert_int_equal(f.scene->simulation.master.solver, BOUGH_AUTOMATIC);
+    f = accepts("simulation: {duration: 1 s}\nbodies:\n" HINGED("a"));
+    assert_int_equal(f.scene->simulation.master.solver, BOUGH_RADAU5);
+    const char *const rigid[] = {"bodies[blade1].fidelity=rigid"};
+    f = read_scene(SCENES "example-turbine.yaml", rigid, 1);
+    assert_false(bough_scene_suits_radau(f.scene));
 }
 
 // A key that is named holds; those beside it still follow.

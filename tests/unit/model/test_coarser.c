@@ -177,14 +177,16 @@ TEST(a_tight_tolerance_becomes_much_larger) {
     static const struct {
         const char *path, *set;
         double rtol, step, macro_step, ratio;
-    } cases[] = {{pendulum, NULL, 3e-9, 20e-3, 40e-3, 0.1},
-                 {pendulum, "simulation.master.rtol=1e-6", 1e-5, 0, 20e-3, 0.4},
-                 {rod, "simulation.master.rtol=1e-9", 1e-7, 0, 20e-3, 1},
-                 {rod, "simulation.master.rtol=4e-8", 1e-6, 0, 20e-3, 1},
-                 {rod, "simulation.master.rtol=2e-7", 2.4e-6, 0, 20e-3, 1}};
+        int solver;
+    } cases[] = {{pendulum, "simulation.master.solver=ida", 3e-9, 20e-3, 40e-3, 0.3, BOUGH_RADAU5},
+                 {pendulum, "simulation.master={solver: ida, rtol: 1e-6}", 1e-5, 0, 20e-3, 0.4, BOUGH_IDA},
+                 {rod, "simulation.master.rtol=1e-9", 1e-7, 0, 20e-3, 1, BOUGH_IDA},
+                 {rod, "simulation.master.rtol=4e-8", 1e-6, 0, 20e-3, 1, BOUGH_IDA},
+                 {rod, "simulation.master.rtol=2e-7", 2.4e-6, 0, 20e-3, 1, BOUGH_IDA}};
     check_arena(arena);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         coarser x = coarser_of(arena, cases[k].path, cases[k].set, NULL);
+        assert_int_equal(x.other->simulation.master.solver, cases[k].solver);
         check_near(x.other->simulation.master.rtol, cases[k].rtol, 0, 1e-12);
         check_near(x.other->simulation.master.step, cases[k].step, 0, 1e-12);
         check_near(x.other->simulation.macro_step, cases[k].macro_step, 0, 1e-12);
