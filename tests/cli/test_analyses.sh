@@ -97,6 +97,10 @@ statics() {
     ! grep -q -e --path ../stderr || fail "$said: $(cat ../stderr)" # there is none with air
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
+    # a ramped load beyond buckling counts in full: 1.9862 /s by `bough modes`
+    expect 0 static "$folder/apps/beams/buckling.yaml" --out buckled
+    has ../stderr 'unstable: motions from it grow at 1.99 1/s$'
+    rm -r buckled
     # a slack line from above its clamp, which the rod's own search loses at 99 % of the load
     expect 0 static "$blade" --out slack --set 'bodies=[{name: line, fidelity: rod, joint: {kind: fixed, parent: ground,
         placement: [rotate y 60 deg]}, rod: {length: 100 m, segments: 40, stiffness: [1e6, 1e6, 3e6, 1e4, 1e4, 1e4],

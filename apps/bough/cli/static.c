@@ -11,7 +11,7 @@ typedef struct equilibrium {
     bough_simulation *simulation;
     bool finer;                  // of the finer mesh with which the scene's is compared
     bool independent;            // each rod by itself; there are no channels
-    double time;                 // of the loads of the whole scene [s]
+    double time;                 // of the loads [s]
     bough_equilibrium_work work; // of the whole scene
     bough_growth growth;         // of motions from it
     int n;
@@ -51,7 +51,6 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
 // The equilibrium of the whole scene and the values of the run's channels there.
 static bough_status find_whole(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
-    x->time = bough_equilibrium_time(s);
     int how = x->finer ? BOUGH_EQUILIBRIUM_FINER : BOUGH_EQUILIBRIUM_UNSTABLE;
     BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, x->time, how, &x->work));
     for (int k = 0; k < s->n_beam; k++) {
@@ -75,7 +74,6 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
         const bough_steady *rod = &x->rod[k];
         size_t size = BOUGH_ROD_STATES * (size_t)rod->model->n;
         memcpy(state + a->state_offset[rod->beam->port + 1], rod->state, size * sizeof *state);
-        x->time = fmax(x->time, rod->time);
     }
     if (x->independent) bough_equilibrium_set_state(s, a, state);
     return bough_simulation_growth(s, a, x->time, false, &x->growth);
@@ -85,7 +83,10 @@ static bough_status find_growth(bough_arena *arena, equilibrium *x) {
 // search for a single rod fails, as for a slack one, the whole scene is searched.
 static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, const equilibrium *coarse,
                                      equilibrium *x) {
-    *x = (equilibrium){.simulation = s, .finer = coarse, .channels = bough_channels_start(arena)};
+    *x = (equilibrium){.simulation = s,
+                       .finer = coarse,
+                       .time = bough_equilibrium_time(s),
+                       .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
     // modal bodies need the whole scene
     x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
@@ -102,7 +103,7 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, co
 // equilibrium.
 static void seek_stable(bough_arena *arena, equilibrium *x) {
     if (!x->independent || x->growth.rate == 0) return;
-    equilibrium whole = {.channels = bough_channels_start(arena)};
+    equilibrium whole = {.time = x->time, .channels = bough_channels_start(arena)};
     whole.rod = bough_arena_take(arena, ((size_t)x->n + 1) * sizeof *whole.rod);
     bough_status status = bough_simulation_build(arena, x->simulation->scene, &whole.simulation);
     if (bough_is_ok(&status)) status = find_whole(arena, &whole);
