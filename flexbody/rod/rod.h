@@ -264,12 +264,9 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                     bough_rod_scratch *scratch);
 
-// Elastic force and moment (6) in the middle of segment n, in section axes there, of the
-// configuration in scratch->vertex, under the loads that scratch had last [N, N m].
-void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);
-
 // The smallest ratio of a segment's torsional stiffness to that below which, bent and under tension, it
-// twists although the rod does not, theory (111). Conditions as for bough_rod_stress.
+// twists although the rod does not, theory (111). Of the configuration in scratch->vertex, under the loads
+// that scratch had last.
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
 // Kernels, each called at its model's level.

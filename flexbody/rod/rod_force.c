@@ -22,35 +22,19 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     lane_store(wrench + 3, 1, 0, bough_add(moment, lane_load(f + 6 * s, s, 0)));
 }
 
-// By the balance of the segment's left half: pretwist and curvature make it differ a little from what
-// the strains are conjugate to.
-void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]) {
-    // the stress that the strains are conjugate to
-    segment_geometry shape = shape_at(m, scratch, n);
-    strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, m->stride, n);
-    strain s = segment_stress(bough_rod_tile(m->stiffness, 21, n), bough_rod_tile(m->gradient, 35, n),
-                              BOUGH_LANES, 0, e);
-    // forces of the segment on its vertices, then the moment in its middle from that on the left one
-    segment_force f = stress_force(shape, s, m->length[n]);
-    bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
-    bough_vec3 force = along_axis(shape.v, s.v);
-    bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, force));
-    lane_store(stress, 1, 0, s.v);
-    lane_store(stress + 3, 1, 0, moment);
-}
-
 enum { TWIST = 20 }; // C₆₆ in the upper triangle by rows
 
 // theory (111)
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch) {
     double least = INFINITY;
     for (int n = 0; n < m->n_segment; n++) {
-        double stress[6], h = m->length[n];
-        bough_vec3 phi = shape_at(m, scratch, n).phi;
-        bough_rod_stress(m, scratch, n, stress);
-        double needed = 0.04 * (phi.x * phi.x + phi.y * phi.y) * stress[2] * h * h;
-        if (needed > 0)
-            least = fmin(least, bough_rod_tile(m->stiffness, 21, n)[TWIST * BOUGH_LANES] / needed);
+        const double *stiffness = bough_rod_tile(m->stiffness, 21, n);
+        segment_geometry shape = shape_at(m, scratch, n);
+        strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, m->stride, n);
+        double tension = segment_stress(stiffness, bough_rod_tile(m->gradient, 35, n), BOUGH_LANES, 0, e).v.z;
+        double h = m->length[n], bend = shape.phi.x * shape.phi.x + shape.phi.y * shape.phi.y;
+        double needed = 0.04 * bend * tension * h * h;
+        if (needed > 0) least = fmin(least, stiffness[TWIST * BOUGH_LANES] / needed);
     }
     return least;
 }

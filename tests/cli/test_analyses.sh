@@ -70,7 +70,8 @@ EOF
 # The blade under 100 kN at its tip: reference of a geometrically exact beam by shooting.
 statics() {
     expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]'
-    has ../stdout '^rod blade: 48 segments, 61.5 m, [0-9]* iterations$'
+    has ../stdout '^rods one by one: [0-9]* steps$'
+    has ../stdout '^rod blade: 48 segments, 61.5 m$'
     near ../stdout '^tip blade: u ' 4 7.68969 0.0015
     near ../stdout '^tip blade: u ' 5 -0.414706 0.0015
     near ../stdout '^tip blade: u ' 6 -1.122878 0.0015
@@ -80,6 +81,7 @@ statics() {
     [ "$(wc -l <out/blade/static.csv)" -eq 50 ] || fail "$said: static.csv has not 50 lines"
     has out/blade/static.csv '^rod,span (m),ux (m),'
     has out/blade/static.csv '^blade,61.5,7.6'
+    has out/blade/static-channels.csv '^bladeTipX,m,7.6.*,[0-9.e-]*[1-9]'
     rm -r out
     expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]' \
         --set bodies[0].fidelity=segmented-modal --set bodies[0].modal.pieces=24 --out pieces
@@ -97,6 +99,15 @@ statics() {
     ! grep -q -e --path ../stderr || fail "$said: $(cat ../stderr)" # there is none with air
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
+    # a load along the rod within its segments: 0.529485 N m with 24 and more of them
+    expect 0 static "$scenes/dead-load.yaml" --out along
+    near ../stdout '^ *1.3750 .* 2.64491 ' 5 0.529485 1e-5
+    rm -r along
+    # a driven joint has the position and the speed that it has when no load grows any more
+    expect 0 static "$folder/apps/beams/spin-up.yaml" --out driven
+    has ../stdout '^joint hub: revolute 2578.31 deg$'
+    has driven/static-channels.csv '^RotSpeed,rpm,57.29577951,0$'
+    rm -r driven
     # a ramped load beyond buckling counts in full: 1.9862 /s by `bough modes`
     expect 0 static "$folder/apps/beams/buckling.yaml" --out buckled
     has ../stderr 'unstable: motions from it grow at 1.99 1/s$'

@@ -49,7 +49,7 @@ static void advance_air(work *w, const double *state, bool loads, double step, d
 // w->before. The first of two short steps makes the air's inputs those of this state.
 static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->whole->assembly, w->state);
+    bough_equilibrium_set_state(s, w->whole->assembly, w->time, w->state);
     if (w->dynamic) {
         advance_air(w, w->state, false, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
@@ -66,7 +66,7 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
 // Sets the air to equilibrium about `state` and stores its memory in w->memory.
 static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->whole->assembly, state);
+    bough_equilibrium_set_state(s, w->whole->assembly, w->time, state);
     bough_aero_link_hold(s->aero, w->time);
     if (!w->dynamic) return;
     bough_aero_link_continue(s->aero, w->time, false);

@@ -79,7 +79,7 @@ static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double
     }
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
     state[azimuth] += x->turn;
-    bough_equilibrium_set_state(x->simulation, x->simulation->master->assembly, state);
+    bough_equilibrium_set_state(x->simulation, x->simulation->master->assembly, time, state);
 }
 
 static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bool balanced,

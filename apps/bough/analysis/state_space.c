@@ -164,7 +164,7 @@ static void name_outputs(const work *w, bough_state_space *to) {
 // Rates and channels at a state, under the air's forces that the bodies have.
 static bough_status evaluate(work *w, const double *state, int side) {
     bough_simulation *s = w->s;
-    bough_equilibrium_set_state(s, w->whole->assembly, state);
+    bough_equilibrium_set_state(s, w->whole->assembly, w->time, state);
     BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[side]));
     memcpy(s->master->coupling->input, w->whole->input, (size_t)w->whole->assembly->n_input * sizeof(double));
     bough_channels_sample(&w->channels, w->time, w->value[side]);
@@ -210,7 +210,7 @@ static bough_status by_inputs(work *w, bough_state_space *to) {
             memcpy(w->state, w->about, n_state * sizeof *w->state);
             set_input(w, k, (2 * side - 1) * w->size[k], w->state);
             bough_status status = evaluate(w, w->state, side);
-            bough_equilibrium_set_state(w->s, w->whole->assembly, w->about);
+            bough_equilibrium_set_state(w->s, w->whole->assembly, w->time, w->about);
             set_input(w, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
         }

@@ -82,34 +82,3 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, co
     return bough_rod_steady(steady->model, bough_rod_body_loads(beam->rod), steady->input, &options,
                             &steady->work, steady->state);
 }
-
-bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
-                                      double time, bough_steady *steady) {
-    const bough_assembly *a = s->master->assembly;
-    const bough_coupling *c = s->master->coupling;
-    const double *input = c->input + a->input_offset[beam->port + 1];
-    const bough_rod_model *m = bough_rod_body_model(beam->rod);
-    *steady = (bough_steady){.beam = beam, .model = m, .time = time};
-    steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * m->n);
-    bough_rod_static_init(&steady->work, arena, m);
-    bough_assembly_outputs(a, time, c->output, c->input);
-    memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
-    memcpy(steady->state, s->rod[beam->port].state, (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
-    steady->work.scaled = *bough_rod_body_loads(beam->rod);
-    bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);
-    bough_rod_load(m, &steady->work.scaled, time, &steady->work.scratch);
-    return bough_ok();
-}
-
-void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift, bough_vec3 *turn) {
-    const bough_rod_model *m = steady->model;
-    bool end = i > m->n; // belongs to what the rod carries: its x and p after u and W
-    const double *y = end ? steady->input + BOUGH_ROD_INPUTS + 6 : steady->state + i - 1;
-    int n = end ? 1 : m->n;
-    *shift = *turn = bough_v3(0, 0, 0);
-    if (i == 0) return;
-    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
-    bough_quaternion undeformed = bough_quaternion_conjugate(m->rotation0[i]);
-    *shift = bough_sub(bough_v3(y[0], y[n], y[2 * n]), m->position0[i]);
-    *turn = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
-}

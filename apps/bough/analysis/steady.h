@@ -1,5 +1,5 @@
-// Rods in equilibrium: one by one with a clamped root, at rest or in steady rotation, for statics and
-// eigenvalues; or in the equilibrium of the whole scene (equilibrium.h).
+// Rods in equilibrium one by one with a clamped root, at rest or in steady rotation, for statics and
+// eigenvalues.
 #pragma once
 
 #include "apps/bough/model/simulation.h"
@@ -10,7 +10,6 @@ typedef struct bough_steady {
     const bough_rod_model *model;
     double input[BOUGH_ROD_MOST_INPUTS]; // constant twist and gravity of the body's frame, in its
                                          // axes, and the motion of the end that carries bodies
-    double time;                         // of the loads [s]
     double *state;                       // in equilibrium (13 n)
     bough_rod_static work; // work.scaled: the loads, all of them; work.scratch: the rod gathered
 } bough_steady;
@@ -33,10 +32,3 @@ int bough_steady_rods(const bough_simulation *s);
 // gravity is its mean over a revolution, along the axis.
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                                const bough_turning *turning, bough_steady *steady);
-
-// The rod in the equilibrium of the whole scene under the loads at `time`.
-bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
-                                      double time, bough_steady *steady);
-
-// Displacement [m] and rotation vector [rad] of vertex i from the undeformed rod, in body axes.
-void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift, bough_vec3 *turn);

@@ -4,20 +4,19 @@
 #include "apps/bough/cli/command.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/equilibrium.h"
+#include "apps/bough/model/section_loads.h"
 #include "apps/bough/results/channels.h"
 #include "apps/bough/results/folder.h"
 
 typedef struct equilibrium {
     bough_simulation *simulation;
-    bool finer;                  // of the finer mesh with which the scene's is compared
-    bool independent;            // each rod by itself; there are no channels
-    double time;                 // of the loads [s]
-    bough_equilibrium_work work; // of the whole scene
-    bough_growth growth;         // of motions from it
+    bool one_by_one; // each rod is found by itself
+    double time;     // of the loads [s]
+    bough_equilibrium_work work;
     int n;
-    bough_steady *rod;       // (n)
-    bough_channels channels; // of the whole scene
-    double *value;           // (channels.count)
+    bough_section_loads *rod; // (n)
+    bough_channels channels;
+    double *value; // (channels.count)
 } equilibrium;
 
 enum {
@@ -36,95 +35,85 @@ typedef struct mesh_error {
     double *largest;                  // (channels.count) of each channel, in its unit
 } mesh_error;
 
-// -- the equilibrium of each rod or of the whole scene, and the error of its mesh -----------------
+// -- the equilibrium ------------------------------------------------------------------------------
 
 static bough_status find_rods(bough_arena *arena, equilibrium *x) {
-    const bough_simulation *s = x->simulation;
-    const bough_turning rest = {0};
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].rod == NULL) continue;
-        BOUGH_TRY(bough_steady_find(arena, s, &s->beam[k], &rest, &x->rod[x->n++]));
-    }
-    return bough_ok();
-}
-
-// The equilibrium of the whole scene and the values of the run's channels there.
-static bough_status find_whole(bough_arena *arena, equilibrium *x) {
-    bough_simulation *s = x->simulation;
-    int how = x->finer ? BOUGH_EQUILIBRIUM_FINER : BOUGH_EQUILIBRIUM_UNSTABLE;
-    BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, x->time, how, &x->work));
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].rod == NULL) continue;
-        BOUGH_TRY(bough_steady_equilibrium(arena, s, &s->beam[k], x->time, &x->rod[x->n++]));
-    }
-    BOUGH_TRY(bough_simulation_channels(s, &x->channels));
-    x->value = bough_arena_doubles(arena, (size_t)x->channels.count + 1);
-    bough_simulation_update(s);
-    bough_channels_sample(&x->channels, x->time, x->value);
-    return bough_ok();
-}
-
-// Growth of motions from the equilibrium. The states of rods that were found one by one are put together.
-static bough_status find_growth(bough_arena *arena, equilibrium *x) {
     bough_simulation *s = x->simulation;
     const bough_assembly *a = s->master->assembly;
+    const bough_turning rest = {0};
+    bough_steady rod;
     double *state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     bough_assembly_states(a, state);
-    for (int k = 0; k < x->n && x->independent; k++) {
-        const bough_steady *rod = &x->rod[k];
-        size_t size = BOUGH_ROD_STATES * (size_t)rod->model->n;
-        memcpy(state + a->state_offset[rod->beam->port + 1], rod->state, size * sizeof *state);
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod == NULL) continue;
+        BOUGH_TRY(bough_steady_find(arena, s, &s->beam[k], &rest, &rod));
+        size_t size = BOUGH_ROD_STATES * (size_t)rod.model->n;
+        memcpy(state + a->state_offset[rod.beam->port + 1], rod.state, size * sizeof *state);
+        x->work.steps += rod.work.iterations;
     }
-    if (x->independent) bough_equilibrium_set_state(s, a, state);
-    return bough_simulation_growth(s, a, x->time, false, &x->growth);
+    bough_equilibrium_set_state(s, a, x->time, state);
+    return bough_ok();
 }
 
-// The equilibrium of the simulation; for comparison with a coarse one it is found in the same way. If the
-// search for a single rod fails, as for a slack one, the whole scene is searched.
-static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, const equilibrium *coarse,
+// If the search for a single rod fails, as for a slack one, the whole scene is searched.
+static bough_status balance(bough_arena *arena, int how, equilibrium *x) {
+    bough_status status = bough_ok();
+    if (x->one_by_one) status = find_rods(arena, x);
+    if (x->one_by_one && status.code != BOUGH_FAILED) return status;
+    x->one_by_one = false;
+    return bough_simulation_equilibrium(x->simulation, x->simulation->master->assembly, x->time, how,
+                                        &x->work);
+}
+
+// The equilibrium and the values of the run's channels there.
+static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, bool one_by_one, int how,
                                      equilibrium *x) {
+    const bough_coupling *c = s->master->coupling;
     *x = (equilibrium){.simulation = s,
-                       .finer = coarse,
+                       .one_by_one = one_by_one,
                        .time = bough_equilibrium_time(s),
                        .channels = bough_channels_start(arena)};
     x->rod = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *x->rod);
-    // modal bodies need the whole scene
-    x->independent = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
-    if (coarse && !coarse->independent) x->independent = false;
-    if (!x->independent) return find_whole(arena, x);
-    bough_status status = find_rods(arena, x);
-    if (status.code != BOUGH_FAILED) return status;
-    x->independent = false;
-    x->n = 0;
-    return find_whole(arena, x);
+    BOUGH_TRY(balance(arena, how, x));
+    BOUGH_TRY(bough_simulation_channels(s, &x->channels));
+    x->value = bough_arena_doubles(arena, (size_t)x->channels.count + 1);
+    bough_assembly_outputs(s->master->assembly, x->time, c->output, c->input);
+    bough_simulation_update(s);
+    bough_channels_sample(&x->channels, x->time, x->value);
+    // bodies at rest or in steady rotation, also where a joint is held against a torque
+    bough_simulation_accelerate(s, x->time);
+    memset(s->view->acceleration, 0, (size_t)s->tree->n_links * sizeof *s->view->acceleration);
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod == NULL) continue;
+        x->rod[x->n] = bough_section_loads_create(arena, s, &s->beam[k]);
+        bough_section_loads_evaluate(&x->rod[x->n++], x->time);
+    }
+    return bough_ok();
+}
+
+static bough_status find_growth(const equilibrium *x, bough_growth *growth) {
+    return bough_simulation_growth(x->simulation, x->simulation->master->assembly, x->time, false, growth);
 }
 
 // If rods that were found one by one are unstable, the search of the whole scene may find a stable
 // equilibrium.
-static void seek_stable(bough_arena *arena, equilibrium *x) {
-    if (!x->independent || x->growth.rate == 0) return;
-    equilibrium whole = {.time = x->time, .channels = bough_channels_start(arena)};
-    whole.rod = bough_arena_take(arena, ((size_t)x->n + 1) * sizeof *whole.rod);
-    bough_status status = bough_simulation_build(arena, x->simulation->scene, &whole.simulation);
-    if (bough_is_ok(&status)) status = find_whole(arena, &whole);
-    if (bough_is_ok(&status)) status = find_growth(arena, &whole);
-    if (bough_is_ok(&status) && whole.growth.rate == 0) *x = whole;
+static void seek_stable(bough_arena *arena, equilibrium *x, bough_growth *growth) {
+    bough_simulation *s;
+    equilibrium whole;
+    bough_growth other;
+    bough_status status = bough_simulation_build(arena, x->simulation->scene, &s);
+    if (bough_is_ok(&status)) status = find_equilibrium(arena, s, false, BOUGH_EQUILIBRIUM_UNSTABLE, &whole);
+    if (bough_is_ok(&status)) status = find_growth(&whole, &other);
+    if (bough_is_ok(&status) && other.rate == 0) *x = whole, *growth = other;
 }
 
 // Displacement and rotation of the tip, force and moment at the root.
-static void find_results(bough_steady *rod, bough_vec3 result[STATIC_RESULTS]) {
-    double wrench[6];
-    bough_steady_displacement(rod, rod->model->n_segment, &result[STATIC_DISPLACEMENT],
-                              &result[STATIC_ROTATION]);
-    bough_rod_root_wrench(rod->model, &rod->work.scaled, rod->time, rod->state, rod->input,
-                          &rod->work.scratch, wrench);
-    // less the inertia of the root vertex, which belongs to the carrier
-    const double *in = rod->input;
-    bough_twist v = {{in[0], in[1], in[2]}, {in[3], in[4], in[5]}},
-                fall = {{-in[6], -in[7], -in[8]}, {0, 0, 0}};
-    bough_wrench vertex = bough_inertia_wrench(&rod->beam->vertex[0], fall, v);
-    result[STATIC_FORCE] = bough_sub(bough_v3_load(wrench), vertex.force);
-    result[STATIC_MOMENT] = bough_sub(bough_v3_load(wrench + 3), vertex.moment);
+static void find_results(const bough_section_loads *rod, bough_vec3 result[STATIC_RESULTS]) {
+    const bough_rod_def *def = &rod->beam->def;
+    bough_simulation_shift(rod->simulation, rod->beam, def->n_segment, &result[STATIC_DISPLACEMENT],
+                           &result[STATIC_ROTATION]);
+    result[STATIC_FORCE] = rod->root.force;
+    result[STATIC_MOMENT] = bough_add(rod->root.moment, bough_cross(def->position[0], rod->root.force));
 }
 
 // -- a finer mesh ---------------------------------------------------------------------------------
@@ -141,10 +130,8 @@ static void compare(const mesh_error *c, equilibrium *fine) {
             c->rod[STATIC_RESULTS * k + i] = fraction * bough_norm(bough_sub(here[i], there[i]));
         }
     }
-    bool channels = !fine->independent && !coarse->independent;
-    for (int i = 0; channels && i < fine->simulation->n_motion_channel; i++) {
+    for (int i = 0; i < fine->simulation->n_motion_channel; i++)
         c->largest[i] = fraction * fabs(coarse->value[i] - fine->value[i]);
-    }
 }
 
 // Segments of the finer mesh relative to the scene's: with a factor of two it would still miss details of a
@@ -178,7 +165,7 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     // start from the equilibrium found, since there may be several
     bough_simulation_take_shape(c->of->simulation, s);
-    BOUGH_TRY(find_equilibrium(arena, s, c->of, &fine));
+    BOUGH_TRY(find_equilibrium(arena, s, c->of->one_by_one, BOUGH_EQUILIBRIUM_FINER, &fine));
     compare(c, &fine);
     return bough_ok();
 }
@@ -205,23 +192,27 @@ static const char *const heads[TABLES][2][COLUMNS] = {
      {"(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)"}},
 };
 
-static int count_rows(const bough_steady *x, int table) { return x->model->n_segment + (table == VERTICES); }
+static int count_rows(const bough_section_loads *x, int table) {
+    return x->beam->def.n_segment + (table == VERTICES);
+}
 
-static void find_row(const bough_steady *x, int table, int i, double value[COLUMNS]) {
-    const double *span = x->model->span;
+static void find_row(const bough_section_loads *x, int table, int i, double value[COLUMNS]) {
+    const double *span = x->beam->def.span;
     bough_vec3 shift, turn;
     value[0] = table == VERTICES ? span[i] : 0.5 * (span[i] + span[i + 1]);
     if (table == MIDDLES) {
-        bough_rod_stress(x->model, &x->work.scratch, i, value + 1);
+        bough_mat3 axes;
+        bough_section_load load = bough_section_loads_at(x, i, 0.5, &axes);
+        bough_v3_store(load.force, value + 1);
+        bough_v3_store(load.moment, value + 4);
         return;
     }
-    bough_steady_displacement(x, i, &shift, &turn);
+    bough_simulation_shift(x->simulation, x->beam, i, &shift, &turn);
     bough_v3_store(shift, value + 1);
-    bough_v3_store(turn, value + 4);
-    for (int c = 4; c < COLUMNS; c++) value[c] /= BOUGH_DEGREE;
+    bough_v3_store(bough_scale(1 / BOUGH_DEGREE, turn), value + 4);
 }
 
-static void print_table(const bough_steady *x, int table) {
+static void print_table(const bough_section_loads *x, int table) {
     double value[COLUMNS];
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < COLUMNS; c++) printf(c == 0 ? "%10s" : " %12s", heads[table][k][c]);
@@ -235,7 +226,7 @@ static void print_table(const bough_steady *x, int table) {
 }
 
 // Empty fields after the last row.
-static void write_row(const bough_steady *x, int table, int i, FILE *file) {
+static void write_row(const bough_section_loads *x, int table, int i, FILE *file) {
     double value[COLUMNS];
     bool there = i < count_rows(x, table);
     if (there) find_row(x, table, i, value);
@@ -254,7 +245,7 @@ static void write_rods(const void *self, FILE *file) {
     fputc('\n', file);
     for (int k = 0; k < x->n; k++) {
         for (int i = 0; i < count_rows(&x->rod[k], VERTICES); i++) {
-            fputs(x->rod[k].model->name, file);
+            fputs(x->rod[k].beam->body->name, file);
             for (int table = 0; table < TABLES; table++) write_row(&x->rod[k], table, i, file);
             fputc('\n', file);
         }
@@ -263,11 +254,9 @@ static void write_rods(const void *self, FILE *file) {
 
 // -- output ---------------------------------------------------------------------------------------
 
-static void print_rod(bough_steady *x) {
-    const bough_rod_model *m = x->model;
-    printf("rod %s: %d segments, %.9g m", m->name, m->n_segment, m->span[m->n_segment]);
-    if (x->work.iterations > 0) printf(", %d iterations", x->work.iterations);
-    putchar('\n');
+static void print_rod(const bough_section_loads *x) {
+    const bough_rod_model *m = x->beam->mesh;
+    printf("rod %s: %d segments, %.9g m\n", m->name, m->n_segment, m->span[m->n_segment]);
     for (int table = 0; table < TABLES; table++) print_table(x, table);
     bough_vec3 result[STATIC_RESULTS];
     find_results(x, result);
@@ -322,7 +311,7 @@ static void warn_of_growth(const bough_status *found, const bough_growth *growth
 }
 
 static void print_whole(const equilibrium *x) {
-    printf("whole scene: %d steps", x->work.steps);
+    printf("%s: %d steps", x->one_by_one ? "rods one by one" : "whole scene", x->work.steps);
     if (x->work.samples > 0) printf(", %d samples of the air", x->work.samples);
     if (x->time > 0) printf(", loads at %.6g s", x->time);
     putchar('\n');
@@ -406,7 +395,7 @@ static void print_modal(bough_simulation *s) {
         const bough_beam *beam = &s->beam[k];
         if (beam->modal == NULL) continue;
         bough_vec3 u, r;
-        bough_simulation_tip_shift(s, beam, &u, &r);
+        bough_simulation_shift(s, beam, beam->def.n_segment, &u, &r);
         r = bough_scale(1 / BOUGH_DEGREE, r);
         printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n", beam->body->name,
                u.x, u.y, u.z, r.x, r.y, r.z);
@@ -439,25 +428,28 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->path) return follow_path(arena, s, folder);
     equilibrium x;
     mesh_error mesh;
-    BOUGH_TRY(find_equilibrium(arena, s, NULL, &x));
-    bough_status stability = find_growth(arena, &x);
-    seek_stable(arena, &x);
-    warn_of_growth(&stability, &x.growth);
+    // modal bodies need the whole scene
+    bool one_by_one = bough_rods_are_independent(s) && bough_steady_rods(s) == s->n_rod;
+    bough_growth growth;
+    BOUGH_TRY(find_equilibrium(arena, s, one_by_one, BOUGH_EQUILIBRIUM_UNSTABLE, &x));
+    bough_status stability = find_growth(&x, &growth);
+    if (x.one_by_one && growth.rate > 0) seek_stable(arena, &x, &growth);
+    warn_of_growth(&stability, &growth);
     find_mesh_error(arena, &x, &mesh);
-    if (!x.independent) print_whole(&x);
+    print_whole(&x);
     for (int k = 0; k < x.n; k++) {
         print_rod(&x.rod[k]);
         const double *e = mesh.rod + STATIC_RESULTS * k;
         if (mesh.unknown[0] == '\0')
             printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n",
-                   x.rod[k].model->name, e[STATIC_DISPLACEMENT], e[STATIC_ROTATION] / BOUGH_DEGREE,
+                   x.rod[k].beam->body->name, e[STATIC_DISPLACEMENT], e[STATIC_ROTATION] / BOUGH_DEGREE,
                    e[STATIC_FORCE], e[STATIC_MOMENT]);
     }
     print_modal(x.simulation);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
     BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "static.csv", write_rods, &x));
-    if (!x.independent) BOUGH_TRY(write_channels(&x, &mesh, folder));
+    BOUGH_TRY(write_channels(&x, &mesh, folder));
     printf("out: %s\n", folder);
     return bough_ok();
 }

@@ -12,9 +12,10 @@ double bough_equilibrium_time(const bough_simulation *s) {
     return last;
 }
 
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, double time,
+                                 const double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
-        bough_member_set(assembly->member[i], 0, state + assembly->state_offset[i]);
+        bough_member_set(assembly->member[i], time, state + assembly->state_offset[i]);
     }
     bough_simulation_update(s);
 }
@@ -108,7 +109,7 @@ static bough_status find_stiffened(bough_arena *arena, void *data) {
     }
     if (c->exponent > 0) limits.tolerance = near_tolerance;
     if (c->started) {
-        bough_equilibrium_set_state(s, a, c->state);
+        bough_equilibrium_set_state(s, a, c->time, c->state);
         limits.step = BOUGH_EQUILIBRIUM_LONGEST;
         limits.least = near_least;
         limits.steps = NEAR_STEPS;
@@ -144,19 +145,19 @@ static bough_status find_slack(continuation *c, const double *start) {
     bough_equilibrium_def whole = bough_equilibrium_def_default();
     whole.kinetic = bough_equilibrium_search_kinetic;
     bough_growth growth = {0}, fallen = {0};
-    bough_equilibrium_set_state(s, a, start);
+    bough_equilibrium_set_state(s, a, c->time, start);
     bough_status softened = s->n_rod > 0 ? soften(c) : bough_fail(BOUGH_FAILED, "no rods");
     bough_equilibrium_work work = *c->work;
     if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, false, &growth);
     if (bough_is_ok(&softened) && growth.rate == 0) return softened;
     // downhill, with any number of steps
-    bough_equilibrium_set_state(s, a, start);
+    bough_equilibrium_set_state(s, a, c->time, start);
     *c->work = (bough_equilibrium_work){0};
     bough_status status = bough_equilibrium_search_within(whole, s, a, c->time, c->work);
     if (!bough_is_ok(&softened) || !(c->how & BOUGH_EQUILIBRIUM_UNSTABLE)) return status;
     if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, false, &fallen);
     if (bough_is_ok(&status) && fallen.rate == 0) return status;
-    bough_equilibrium_set_state(s, a, c->state);
+    bough_equilibrium_set_state(s, a, c->time, c->state);
     *c->work = work;
     return softened;
 }
@@ -263,7 +264,7 @@ static bough_status find_equilibrium(bough_arena *arena, void *data) {
     c->started = true;
     bough_status status = find_stiffened(arena, c);
     if (bough_is_ok(&status)) return status; // otherwise `start` is unchanged
-    bough_equilibrium_set_state(c->simulation, c->assembly, start);
+    bough_equilibrium_set_state(c->simulation, c->assembly, c->time, start);
     c->started = false;
     *c->work = (bough_equilibrium_work){0};
     return find_from_anywhere(arena, c);
@@ -283,9 +284,7 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 static bough_status report_point(void *self, double factor, const double *state, bool limit) {
     const bough_equilibrium_search *x = self;
     double time = fmin(fmax(factor, 0), 1) * bough_equilibrium_time(x->simulation);
-    for (int i = 0; i < x->assembly->n_member; i++)
-        bough_member_set(x->assembly->member[i], time, state + x->assembly->state_offset[i]);
-    bough_simulation_update(x->simulation);
+    bough_equilibrium_set_state(x->simulation, x->assembly, time, state);
     bough_whole_inputs(x->whole, time, state);
     size_t size = (size_t)x->assembly->n_input * sizeof(double);
     memcpy(x->simulation->master->coupling->input, x->whole->input, size);
@@ -344,22 +343,10 @@ typedef struct place {
     bough_quaternion turn; // of the section, from its undeformed one
 } place;
 
-static bough_quaternion turn_of(const bough_rod_model *m, int i, bough_quaternion rotation) {
-    return bough_quaternion_product(rotation, bough_quaternion_conjugate(m->rotation0[i]));
-}
-
-// Place of vertex i of a rod; the root, 0, does not move.
 static place place_of(const bough_simulation *s, const bough_beam *beam, int i) {
-    const bough_rod_model *m = beam->mesh;
-    if (i == 0) return (place){m->position0[0], {1, 0, 0, 0}};
-    const double *y = s->rod[beam->port].state + i - 1;
-    int n = m->n;
-    if (i > n) { // belongs to what the rod carries
-        y = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
-        n = 1;
-    }
-    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
-    return (place){bough_v3(y[0], y[n], y[2 * n]), turn_of(m, i, bough_quaternion_normalised(p))};
+    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[i]);
+    bough_vec3 position = bough_simulation_vertex(s, beam, i, &p);
+    return (place){position, bough_quaternion_product(p, undeformed)};
 }
 
 // Place at a distance from the root, linear between vertices.

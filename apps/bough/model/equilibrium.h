@@ -35,7 +35,7 @@ enum {
 };
 
 // Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
-// their clocks stay at 0. `work`: NULL: not wanted. BOUGH_FAILED names the body that finds none.
+// their clocks are set to it. `work`: NULL: not wanted. BOUGH_FAILED names the body that finds none.
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           int how, bough_equilibrium_work *work);
 
@@ -79,5 +79,6 @@ bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *as
 // linearly between vertices, joints as they are.
 void bough_simulation_take_shape(const bough_simulation *from, bough_simulation *to);
 
-// Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state);
+// Sets the states of all members (n_state), with prescribed motions as they are at `time`; `view` follows.
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, double time,
+                                 const double *state);

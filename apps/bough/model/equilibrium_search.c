@@ -128,7 +128,7 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
     bough_equilibrium_report report;
     bough_status status = bough_equilibrium_find(arena, x->whole, def, x->state, &report);
     x->work->steps += report.steps;
-    bough_equilibrium_set_state(s, x->assembly, x->state);
+    bough_equilibrium_set_state(s, x->assembly, x->time, x->state);
     if (status.code == BOUGH_FAILED) return explain(arena, s, x->assembly, &report);
     if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now

@@ -209,7 +209,7 @@ static void sample_blades(void *self, double t, double *value) {
         double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
-        bough_simulation_tip_shift(s, beam, &d, &turn);
+        bough_simulation_shift(s, beam, beam->def.n_segment, &d, &turn);
         bough_simulation_root(s, beam, t, root);
         *value++ = d.x * c + d.y * sine;
         *value++ = d.y * c - d.x * sine;
@@ -280,7 +280,7 @@ static void sample_tips(void *self, double t, double *value) {
         if (is_blade(s->scene, beam->body)) continue;
         bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
         bough_vec3 d, turn;
-        bough_simulation_tip_shift(s, beam, &d, &turn);
+        bough_simulation_shift(s, beam, beam->def.n_segment, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
         x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
         value = bough_observe_vector(x, 1, value);

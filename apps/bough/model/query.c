@@ -206,15 +206,15 @@ bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam
     return bend;
 }
 
-bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
-                                     bough_quaternion *rotation) {
-    int last = beam->def.n_segment, stride = 1;
+bough_vec3 bough_simulation_vertex(const bough_simulation *s, const bough_beam *beam, int i,
+                                   bough_quaternion *rotation) {
+    int stride = 1;
     const double *x = NULL;
-    *rotation = beam->def.rotation[last];
-    if (beam->port < 0) return beam->def.position[last];
-    if (beam->end < 0) {
-        stride = last;
-        x = bough_beam_state(s, beam, last) + last - 1;
+    *rotation = beam->def.rotation[i];
+    if (i == 0 || beam->port < 0) return beam->def.position[i];
+    if (i <= beam->mesh->n) {
+        stride = beam->mesh->n;
+        x = bough_beam_state(s, beam, i) + i - 1;
     } else {
         x = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
     }
@@ -224,12 +224,16 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
     return bough_v3(x[0], x[stride], x[2 * stride]);
 }
 
-void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
-                                bough_vec3 *turn) {
-    int n = beam->def.n_segment;
-    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
-    *shift = bough_sub(bough_simulation_beam_tip(s, beam, &p), beam->def.position[n]);
-    *turn = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
+                                     bough_quaternion *rotation) {
+    return bough_simulation_vertex(s, beam, beam->def.n_segment, rotation);
+}
+
+void bough_simulation_shift(const bough_simulation *s, const bough_beam *beam, int i, bough_vec3 *shift,
+                            bough_vec3 *turn) {
+    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[i]);
+    *shift = bough_sub(bough_simulation_vertex(s, beam, i, &p), beam->def.position[i]);
+    *turn = i == 0 ? bough_v3(0, 0, 0) : bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
 }
 
 const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam) {

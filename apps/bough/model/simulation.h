@@ -89,14 +89,16 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
 // Angle or displacement of a body's joint and its rate, in the leader's state.
 bough_motion_point bough_simulation_joint_point(const bough_simulation *s, int body);
 
-// Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
+// Position of vertex i of a beam in the body's frame, in which `rotation` is its section's; and of the last.
+bough_vec3 bough_simulation_vertex(const bough_simulation *s, const bough_beam *beam, int i,
+                                   bough_quaternion *rotation);
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
 
-// Displacement of its last vertex [m] and rotation vector of the section there [rad] from the undeformed
-// beam, in the body's axes.
-void bough_simulation_tip_shift(const bough_simulation *s, const bough_beam *beam, bough_vec3 *shift,
-                                bough_vec3 *turn);
+// Displacement of vertex i [m] and rotation vector of the section there [rad] from the undeformed beam, in
+// the body's axes.
+void bough_simulation_shift(const bough_simulation *s, const bough_beam *beam, int i, bough_vec3 *shift,
+                            bough_vec3 *turn);
 
 // States of the vertices of a flexible beam from `first` on, as in rod.h, at `view`; valid until the next
 // call for the same beam.

@@ -32,7 +32,7 @@ static double surplus(search *x, double speed, double pitch) {
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &q, &v);
     bough_assembly_states(x->assembly, x->state);
     s->tree->initial[v] = x->state[v] = speed;
-    bough_equilibrium_set_state(s, x->assembly, x->state);
+    bough_equilibrium_set_state(s, x->assembly, 0, x->state);
     bough_control_link_stand(s->control, speed, pitch);
     x->status = bough_simulation_equilibrium(s, x->assembly, 0, 0, NULL);
     if (!bough_is_ok(&x->status)) return (double)NAN;
