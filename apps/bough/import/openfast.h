@@ -126,10 +126,10 @@ typedef struct bough_openfast_rest {
 void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
                           size_t n, int list);
 
-// Tables of blade and tower; with `top_mass` [kg] on the tower.
+// Tables of blade and tower.
 void bough_openfast_beamdyn(bough_openfast *o);
 void bough_openfast_blade(bough_openfast *o);
-void bough_openfast_tower(bough_openfast *o, double top_mass);
+void bough_openfast_tower(bough_openfast *o);
 
 // Adds a slice of a blade to its mass and inertia: from and to [m], mass there [kg/m].
 void bough_openfast_weigh(bough_openfast *o, const double span[2], const double mass[2]);

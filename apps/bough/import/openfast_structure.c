@@ -15,7 +15,6 @@ typedef struct slender {
     int width, mass, bending; // columns
     double mass_factor, bending_factor;
     double length;       // [m]
-    double end_mass;     // [kg]
     const double *shape; // (COEFFICIENTS) of x² to x⁶
 } slender;
 
@@ -26,9 +25,10 @@ static double at(const slender *b, int column, double x) {
     return r[i * w + column] + s * (r[(i + 1) * w + column] - r[i * w + column]);
 }
 
-// The frequency of the mode by Rayleigh's quotient, ∫ E I φ''² / (∫ m φ² + M φ(L)²) [rad/s].
+// The frequency of the mode by Rayleigh's quotient, ∫ E I φ''² / ∫ m φ² [rad/s]. That of a tower is without
+// its top: ElastoDyn's damping ratio refers to it.
 static double frequency(const slender *b) {
-    double stiffness = 0, mass = 0, end = 0;
+    double stiffness = 0, mass = 0;
     for (int i = 0; i <= GRID; i++) {
         double x = (double)i / GRID, weight = (i == 0 || i == GRID ? 0.5 : 1) * b->length / GRID;
         double value = 0, curvature = 0;
@@ -40,9 +40,8 @@ static double frequency(const slender *b) {
         curvature /= b->length * b->length;
         stiffness += weight * b->bending_factor * at(b, b->bending, x) * curvature * curvature;
         mass += weight * b->mass_factor * at(b, b->mass, x) * value * value;
-        end = value;
     }
-    return sqrt(stiffness / (mass + b->end_mass * end * end));
+    return sqrt(stiffness / mass);
 }
 
 // The frequency of the mode whose shape is `stem`(2) to (6) [rad/s].
@@ -208,7 +207,7 @@ void bough_openfast_blade(bough_openfast *o) {
 
 enum { FORE = 2, SIDE, N_TOWER_COLUMN };
 
-void bough_openfast_tower(bough_openfast *o, double top_mass) {
+void bough_openfast_tower(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "TwrFile");
     bough_openfast_check(deck);
     if (!deck) return;
@@ -221,15 +220,12 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .row = bough_deck_table(deck, column, N_TOWER_COLUMN, n),
                  .mass_factor = bough_deck_number_or(deck, "AdjTwMa", 1),
                  .bending_factor = stiffness_factor(o, deck, "AdjFASt", "FAStTunr"),
-                 .length = o->tower_top - o->tower_base,
-                 .end_mass = top_mass};
+                 .length = o->tower_top - o->tower_base};
     double side = stiffness_factor(o, deck, "AdjSSSt", "SSStTunr");
     extend(o, deck, &b, "NTwInpSt");
     if (!bough_is_ok(o->draft->status)) return;
     check_rows(deck, &b, "NTwInpSt", SIDE);
-    slender bare = b; // to which the deck's ratio refers: ElastoDyn's is of the tower alone
-    bare.end_mass = 0;
-    double time = damping(deck, bare, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
+    double time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
     if (!bough_is_ok(o->draft->status)) return;
     const double times[] = {time, time, time, time, time, time};
     FILE *file = o->draft->file[BOUGH_IMPORT_TOWER];

@@ -3,13 +3,13 @@
 
 // -- tower and nacelle ----------------------------------------------------------------------------
 
-static void put_tower(bough_openfast *o, double top_mass) {
+static void put_tower(bough_openfast *o) {
     if (o->rigid_tower) {
         bough_put(o, "  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n");
         bough_taken(o, "TwFADOF1, TwFADOF2, TwSSDOF1, TwSSDOF2 False: the tower is rigid");
         return;
     }
-    bough_openfast_tower(o, top_mass);
+    bough_openfast_tower(o);
     bough_draft_tower(o->draft, o->tower_base);
 }
 
@@ -303,10 +303,8 @@ static const bough_openfast_rest rest[] = {
 void bough_openfast_bodies(bough_openfast *o) {
     if (!bough_is_ok(o->draft->status)) return;
     const bough_deck *e = o->elasto;
-    double top = bough_deck_number(e, "NacMass") + bough_deck_number(e, "HubMass") +
-                 bough_deck_number_or(e, "YawBrMass", 0) + o->n_blade * o->blade_mass;
     bough_put(o, "bodies:\n");
-    put_tower(o, top);
+    put_tower(o);
     put_nacelle(o);
     put_rotor(o);
     if (bough_deck_whole_or(e, "YawFrctMod", 0) != 0)
