@@ -283,6 +283,7 @@ static bool factor_border(bough_whole *whole) {
 static void hold(bough_whole *whole, double *x) {
     int n = whole->assembly->n_state, held = whole->n_held;
     if (held == 0) return;
+    // the forces that hold them, then the response of all states to these
     for (int i = 0; i < held; i++) whole->held_force[i] = x[whole->held[i]];
     bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->held_force);
     for (int j = 0; j < held; j++) {
@@ -381,6 +382,7 @@ static bool linearise_ahead(void *self, double t, const double *state, const dou
     const bough_assembly *a = own->assembly;
     linearise(self, t, state, NULL, factors);
     own->keeps = keep;
+    // those whose tangents may be ahead are linearised where they will be, theory (115)
     for (int i = 0; i < a->n_member; i++) {
         const bough_system *s = &a->member[i]->system;
         int first = a->state_offset[i];
@@ -429,6 +431,7 @@ bough_system bough_whole_system(bough_arena *arena, const bough_assembly *a, bou
     double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
     bough_assembly_scales(a, scale);
     bough_assembly_states(a, initial);
+    // of the body that is least damped for its stiffness
     double elastic_rate = 0;
     for (int i = 0; i < a->n_member; i++)
         elastic_rate = fmax(elastic_rate, a->member[i]->system.elastic_rate);

@@ -69,6 +69,7 @@ bough_wind_missed bough_wind_between(const bough_wind *wind, double period, doub
         .period = period,
         .point = {bough_v3(0, 0, def->reference_height), bough_v3(0, aside, def->reference_height + aside)}};
     for (int k = 0; k < POINTS; k++) s.low[k] = s.high[k] = bough_wind_at(wind, s.point[k], 0);
+    // what two samples do not show is at the rows between them
     for (int i = 0; i < n; i++) {
         double t = bough_wind_row_time(wind, i);
         if (t > 0 && t < until) look(&s, t);

@@ -39,7 +39,7 @@ static const bough_schema study_schema = {.name = "a study", KEYS(
     {.name = "reference", .kind = BOUGH_KEY_MAPPING, .of = &model_schema, .required = true,
      AT(reference), .help = "what all are measured against"},
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "3", AT(repeat),
-     .help = "runs of each model, one after the other in turns; the least time counts"},
+     .help = "runs of each model, alternately; the least time counts"},
     {.name = "models", .kind = BOUGH_KEY_LIST, .of = &model_schema, .count = 1, .required = true,
      AT(model), COUNT_AT(n),
      .help = "times are relative to the first one's"},

@@ -176,8 +176,8 @@ static bough_status write_copy(const bough_run_command *command) {
 
 static bool is_due(const bough_run_command *command) {
     const bough_master *m = command->run.simulation->master;
-    double turns = m->time / command->checkpoint.interval;
-    double off = fabs(turns - round(turns)) * command->checkpoint.interval;
+    double intervals = m->time / command->checkpoint.interval;
+    double off = fabs(intervals - round(intervals)) * command->checkpoint.interval;
     return off <= 1e-6 * m->macro_step && !bough_master_done(m);
 }
 
