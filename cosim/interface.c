@@ -77,7 +77,8 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     // matrices of the interface
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
-    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
+    bough_arena_each(arena, n * n, &k->loop, &k->matrix);
+    k->eigen = bough_arena_doubles(arena, n * (n + 2) + BOUGH_EIGEN_WORK(n));
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
     k->sum = bough_arena_doubles(arena, n);
@@ -331,32 +332,11 @@ void bough_interface_add_output_response(const bough_interface *k, int member, c
     add_columns(k, system_of(k, member)->n_output, part->n, part->output_change, 1, change, output_change);
 }
 
-// -- gain of the interface ------------------------------------------------------------------------
-
-// result = a a (n × n, column-major)
-static void square(int n, const double *a, double *result) {
-    memset(result, 0, (size_t)n * (size_t)n * sizeof(double));
-    for (int j = 0; j < n; j++) {
-        for (int k = 0; k < n; k++) {
-            double factor = a[j * n + k];
-            for (int i = 0; i < n; i++) result[j * n + i] += factor * a[k * n + i];
-        }
-    }
-}
-
-// theory (57) as ‖(Z K)ᵖ‖^(1/p) with p = 2¹².
+// theory (57)
 double bough_interface_radius(bough_interface *k) {
-    double logarithm = 0, weight = 1;
-    int n = k->n;
-    for (int doubling = 0; doubling < 12; doubling++) {
-        double norm = 0;
-        for (int i = 0; i < n * n; i++) norm = fmax(norm, fabs(k->loop[i]));
-        if (norm == 0) return 0;
-        logarithm += weight * log(norm);
-        weight /= 2;
-        for (int i = 0; i < n * n; i++) k->loop[i] /= norm;
-        square(n, k->loop, k->square);
-        memcpy(k->loop, k->square, (size_t)(n * n) * sizeof(double));
-    }
-    return exp(logarithm);
+    size_t n = (size_t)k->n;
+    double *value = k->eigen + n * n, radius = 0;
+    if (!bough_dense_eigen(k->n, k->loop, value, k->eigen, value + 2 * n)) return (double)NAN;
+    for (size_t i = 0; i < n; i++) radius = fmax(radius, hypot(value[i], value[n + i]));
+    return radius;
 }

@@ -52,8 +52,9 @@ typedef struct bough_interface {
     double *moved;      // (n_output) the leaders' outputs' change with it
 
     // scratch
-    double *square, *sum, *right; // (n × n), (n), (n_leader_input)
-    double *work;                 // (n_state) of each member
+    double *sum, *right; // (n), (n_leader_input)
+    double *eigen;       // eigenvectors and eigenvalues of Z K, and room for them
+    double *work;        // (n_state) of each member
 } bough_interface;
 
 bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly *assembly);
@@ -104,5 +105,5 @@ void bough_interface_add_output_response(const bough_interface *k, int member, c
 void bough_interface_add_columns(const bough_interface *k, int member, double factor, const double *weight,
                                  double *sum);
 
-// The spectral radius of Z K, which is overwritten, the gain of the interface.
+// The spectral radius of Z K, which is overwritten, the gain of the interface; NaN: not found.
 double bough_interface_radius(bough_interface *k);

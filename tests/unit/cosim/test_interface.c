@@ -260,5 +260,5 @@ TEST(radius_is_that_of_the_loop) {
     double det = k->loop[0] * k->loop[3] - k->loop[1] * k->loop[2];
     double square = .25 * trace * trace - det;
     double radius = square > 0 ? .5 * fabs(trace) + sqrt(square) : sqrt(det);
-    check_near(bough_interface_radius(k), radius, 1e-2, 0);
+    check_near(bough_interface_radius(k), radius, 1e-9, 0);
 }
