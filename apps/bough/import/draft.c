@@ -28,7 +28,16 @@ typedef struct outcome {
     bool by_air;
 } outcome;
 
-static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound,
+// An error that a finer mesh may mend, without a search for its cause.
+static bough_status judge_whole(const bough_companion *c, double bound) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    char size[BOUGH_ERROR_SIZE];
+    if (!(v.relative > bound)) return bough_ok();
+    bough_error_size(c, v.channel, size);
+    return bough_fail(BOUGH_FAILED, "%s errs by %s", c->channels->channel[v.channel].name, size);
+}
+
+static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound, bool finer,
                                bool *by_air) {
     bough_run run;
     bough_error_shares shares = {0};
@@ -40,6 +49,7 @@ static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps
     bough_status status = bough_run_create(arena, scene, &run);
     while (bough_is_ok(&status) && !bough_run_done(&run)) status = bough_run_step(&run);
     if (!bough_is_ok(&status)) return status;
+    if (finer && run.companion && bound > 0) return judge_whole(run.companion, bound);
     status = bough_error_judge(arena, run.companion, NULL, bound, &shares, warning);
     *by_air = status.code == BOUGH_FAILED && fails_by_air(run.companion, &shares, bound);
     return status;
@@ -67,7 +77,7 @@ static void silence(void) {
     dup2(null, STDOUT_FILENO);
 }
 
-bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound,
+bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound, bool finer,
                                 bool *by_air) {
     int ends[2], end = 0;
     outcome of = {0};
@@ -75,7 +85,7 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
     pid_t child = fork();
     if (child == 0) {
         silence();
-        of.status = take_steps(arena, scene, steps, bound, &of.by_air);
+        of.status = take_steps(arena, scene, steps, bound, finer, &of.by_air);
         bool whole = write(ends[1], &of, sizeof of) == (ssize_t)sizeof of;
         _exit(whole ? 0 : 1);
     }
@@ -90,11 +100,18 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
 
 // Macro steps [s], and the largest rotation of the rotor in one [rad].
 static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
-enum { HALVINGS = 2 }; // of the macro step, where no tolerance is good enough
+enum { HALVINGS = 2 }; // of the macro step, where no setting is good enough
 
-// Tolerances of the integrator, tried from the first on, all of one length.
-static const char *const tolerance[] = {"4.5e-4", "1.5e-4", "5.0e-5", "1.5e-5"};
-enum { N_TOLERANCE = sizeof tolerance / sizeof *tolerance, TRIAL_STEPS = 2 };
+// Segments of a blade and of the tower, integrator's steps in a macro step, its tolerance: the cheapest
+// first.
+static const struct {
+    int blade, tower, steps;
+    const char *rtol;
+} setting[] = {
+    {24, 10, 1, "1e-3"},   {32, 20, 1, "1e-3"}, {32, 20, 2, "4.5e-4"},
+    {32, 20, 2, "1.5e-4"}, {32, 20, 2, "5e-5"}, {32, 20, 2, "1.5e-5"},
+};
+enum { N_SETTING = sizeof setting / sizeof *setting, TRIAL_STEPS = 2 };
 
 const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {"scene.yaml",           "blade-structure.yaml",
                                                             "tower-structure.yaml", "blade-aero.yaml",
@@ -122,13 +139,14 @@ void bough_draft_tower(bough_draft *d, double foot) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
     if (foot != 0) fprintf(file, ", placement: [move z %.10g m]", foot);
-    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
+    fprintf(file, "}\n    rod: {table: %s, segments: %d}\n", bough_import_name[BOUGH_IMPORT_TOWER],
+            setting[d->setting].tower);
 }
 
 // Segments that shorten towards the tip; docs/import.md has the errors of other numbers of them.
 void bough_draft_blade_rod(bough_draft *d) {
-    fprintf(d->file[BOUGH_IMPORT_SCENE], "    rod: {table: %s, segments: 32, grading: 0.2}\n",
-            bough_import_name[BOUGH_IMPORT_BLADE]);
+    fprintf(d->file[BOUGH_IMPORT_SCENE], "    rod: {table: %s, segments: %d, grading: 0.2}\n",
+            bough_import_name[BOUGH_IMPORT_BLADE], setting[d->setting].blade);
 }
 
 void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
@@ -226,13 +244,9 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
             "  macro_step: %g s\n"
             "  coupling: {scheme: " BOUGH_SCHEME_DEFAULT "} # all bodies coupled at the stages of the steps\n"
-            "  master: {solver: rosenbrock, step: %g ms, rtol: ",
-            -gravity, steps * step, step, 500 * step);
-    d->tolerance_at = ftell(file);
-    fprintf(file,
-            "%s}\n"
+            "  master: {solver: rosenbrock, step: %g ms, rtol: %s}\n"
             "  threads: 2\n",
-            tolerance[0]);
+            -gravity, steps * step, step, 1000 * step / setting[d->setting].steps, setting[d->setting].rtol);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -263,39 +277,30 @@ static bough_status write_files(const char *folder, const bough_draft *d) {
 
 // -- trials ---------------------------------------------------------------------------------------
 
-static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
-    const bough_scene_simulation *s = &scene->simulation;
-    bough_draft_note(d, BOUGH_TRIED, "%g s in macro steps of %g s with rtol %g",
-                     fmin(steps * s->macro_step, s->duration), s->macro_step, s->master.rtol);
-}
-
-// Tries one tolerance after the other, until the errors are small enough: well below the scene's bound, since
-// a whole run may err by more than its first steps, unless there is no smaller tolerance; or until the air
-// errs too much, which shorter macro steps mend. The scene's text gets that tolerance.
-static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
+// Errors count as small enough well below the scene's bound, since a whole run may err by more than its first
+// steps; with the last setting, below the bound.
+static bough_status try_scene(bough_draft *d, bough_scene *scene) {
     const double usual = 0.5; // of the bound
-    int steps = d->options->trial_steps > 0 ? d->options->trial_steps << d->halvings : TRIAL_STEPS;
-    bough_status status = bough_ok();
-    bool by_air = false;
-    for (int i = 0; i < N_TOLERANCE && !(by_air && d->halvings < HALVINGS); i++) {
-        double part = d->options->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
-        scene->simulation.master.rtol = strtod(tolerance[i], NULL);
-        memcpy(d->text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
-        status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound, &by_air);
-        if (status.code != BOUGH_FAILED) break;
-        bough_draft_note(d, BOUGH_TRIED, "rtol %s: %s", tolerance[i], status.message);
-    }
-    if (bough_is_ok(&status)) {
-        note_trial(d, scene, steps);
-        return write_file(folder, d, BOUGH_IMPORT_SCENE);
-    }
+    const bough_scene_simulation *s = &scene->simulation;
+    bool judged = d->options->trial_steps > 0;
+    int steps = judged ? d->options->trial_steps << d->halvings : TRIAL_STEPS;
+    double part = !judged ? 0 : d->setting + 1 < N_SETTING ? usual : 1;
+    double tried = fmin(steps * s->macro_step, s->duration), macro_step = s->macro_step;
+    bool finer = setting[d->setting].blade < setting[N_SETTING - 1].blade;
+    bough_status status =
+        bough_import_trial(d->arena, scene, steps, part * s->error_bound, finer, &d->by_air);
+    bough_draft_note(d, BOUGH_TRIED,
+                     "%g s in macro steps of %g s with rtol %s, steps of %g s and at most %d segments%s%s",
+                     tried, macro_step, setting[d->setting].rtol, s->master.step, setting[d->setting].blade,
+                     bough_is_ok(&status) ? "" : ": ", status.message);
+    if (bough_is_ok(&status)) return status;
     if (status.code != BOUGH_FAILED)
         return bough_fail(status.code, "the model gives a scene that cannot run: %.500s", status.message);
     return bough_fail(
         status.code,
         "the model gives a scene that cannot run, not even with macro steps of %g s and rtol %s: "
         "%.500s",
-        d->macro_step, tolerance[N_TOLERANCE - 1], status.message);
+        macro_step, setting[d->setting].rtol, status.message);
 }
 
 // Reads the scene as a run does, whose checks are more than the deck's, and tries it.
@@ -305,7 +310,7 @@ static bough_status check_scene(bough_draft *d, const char *folder) {
     bough_scene *scene;
     bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
     if (bough_is_ok(&status)) status = bough_scene_read(d->arena, NULL, path, NULL, 0, &errors, &scene);
-    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, folder, scene) : status;
+    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, scene) : status;
     const bough_error *e = errors.item;
     const char *slash = strrchr(e->file, '/');
     return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
@@ -392,24 +397,32 @@ static bough_status import(bough_arena *arena, void *self) {
     return *d->status;
 }
 
-static bough_status import_once(task *t) {
+// *tried: lines of the trials before this one, to which its own is added; to be freed.
+static bough_status import_once(task *t, char **tried) {
     bough_draft *d = &t->draft;
     bough_status kept = bough_ok();
     d->status = &kept;
     bough_status status = open_texts(d);
+    if (bough_is_ok(&status) && *tried) fputs(*tried, d->file[BOUGH_TRIED]);
     if (bough_is_ok(&status)) status = bough_arena_use(import, t);
     close_all(d->file, BOUGH_N_IMPORT_TEXT);
-    for (int i = 0; i < BOUGH_N_IMPORT_TEXT; i++) free(d->text[i]);
+    free(*tried);
+    *tried = d->text[BOUGH_TRIED];
+    for (int i = 0; i < BOUGH_TRIED; i++) free(d->text[i]);
     return status;
 }
 
 bough_status bough_draft_import(void (*convert)(bough_draft *d, const char *path), const char *path,
                                 const char *folder, const bough_import_options *options, FILE *echo) {
     int most = options->trial_steps > 0 ? HALVINGS : 0;
+    char *tried = NULL;
     bough_status status = {.code = BOUGH_FAILED};
-    for (int k = 0; k <= most && status.code == BOUGH_FAILED; k++) {
-        task t = {convert, path, folder, echo, {.options = options, .halvings = k}};
-        status = import_once(&t);
+    for (int k = 0, i = 0; k <= most && status.code == BOUGH_FAILED; k += i == 0) {
+        task t = {convert, path, folder, echo, {.options = options, .halvings = k, .setting = i}};
+        status = import_once(&t, &tried);
+        // shorter macro steps alone mend the error of the air's sampling
+        i = t.draft.by_air && k < most ? 0 : (i + 1) % N_SETTING;
     }
+    free(tried);
     return status;
 }

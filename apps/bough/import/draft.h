@@ -35,16 +35,18 @@ typedef struct bough_draft {
     char *text[BOUGH_N_IMPORT_TEXT];
     size_t size[BOUGH_N_IMPORT_TEXT];
     double macro_step; // [s]; air and control are sampled as often
-    long tolerance_at; // offset of the integrator's tolerance in the scene's text
     const bough_import_options *options;
     int halvings;              // of the macro step, after those for the speed of the rotor
+    int setting;               // of mesh and integrator, which one of those that are tried
+    bool by_air;               // the trial failed by the sampling of the air alone
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
 // convert(d, path) fills a draft, then the files are written unless there was a failure or they make no scene
-// that runs; the list also to `echo` (NULL: nobody). Where a trial fails, again with half the macro step.
+// that runs; the list also to `echo` (NULL: nobody). Where a trial fails, again with a finer mesh, smaller
+// steps and tolerances, then with half the macro step.
 bough_status bough_draft_import(void (*convert)(bough_draft *d, const char *path), const char *path,
                                 const char *folder, const bough_import_options *options, FILE *echo);
 
@@ -103,7 +105,7 @@ void bough_import_path(FILE *file, const char *path);
 // Builds the scene and takes at most `steps` macro steps, with one thread and the calls of the controller's
 // library, in a process of its own: a library that crashes ends the trial, not the import. `bound`: of the
 // errors relative to the channels' ranges [1]; 0: none. BOUGH_INVALID: there is no such model, or its library
-// crashes; BOUGH_FAILED: it cannot be stepped, or its errors exceed the bound, `by_air`: those of the air's
-// sampling alone do.
-bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound,
+// crashes; BOUGH_FAILED: it cannot be stepped, or its errors exceed the bound, those of the mesh only if
+// there is a `finer` one; `by_air`: those of the air's sampling alone do.
+bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound, bool finer,
                                 bool *by_air);

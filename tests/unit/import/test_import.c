@@ -62,13 +62,9 @@ TEST(turbine_has_the_decks_values) {
 TEST(blades_have_shorter_segments_towards_the_tip) {
     trial t = import(NULL);
     const bough_node *s = read_file(&t, "scene.yaml");
-    for (int k = 4; k < 7; k++) {
-        char path[40];
-        snprintf(path, sizeof path, "bodies.%d.rod.segments", k);
-        check_near(number(s, path), 32, 0, 0);
-        snprintf(path, sizeof path, "bodies.%d.rod.grading", k);
-        check_near(number(s, path), 0.2, 0, 0);
-    }
+    check_near(number(s, "bodies.4.rod.segments"), 24, 0, 0);
+    check_near(number(s, "bodies.6.rod.segments"), 24, 0, 0);
+    check_near(number(s, "bodies.6.rod.grading"), 0.2, 0, 0);
 }
 
 TEST(air_tables_follow_their_headers) {
@@ -220,16 +216,17 @@ static void put_library(char line[512], const char *input) {
              BOUGH_SAMPLE_DISCON, input);
 }
 
-// Each trial is a process of its own, which calls the library from its first call on.
+// Each trial is a process of its own, which calls the library from its first call on; after a failure it has
+// a finer mesh, then smaller steps.
 TEST(trials_call_the_library) {
     char line[512];
     const edit library = {"parts/servo.dat", "0   PCMode", line};
     put_library(line, "fifth"); // reports a failure in two trials, to the run and to its companion
     trial t = import(&library);
-    assert_true(list_says(&t, "\ntried:\n  rtol 4.5e-4: "));
-    assert_true(list_says(&t, "\n  rtol 1.5e-4: "));
-    assert_true(list_says(&t, "\n  0.04 s in macro steps of 0.02 s with rtol 5e-05\n"));
-    check_near(number(read_file(&t, "scene.yaml"), "simulation.master.rtol"), 5e-5, 1e-12, 0);
+    assert_true(list_says(&t, "\ntried:\n  0.04 s in macro steps of 0.02 s with rtol 1e-3, steps of 0.02 s"));
+    assert_true(list_says(&t, "\n  0.04 s in macro steps of 0.02 s with rtol 4.5e-4, steps of 0.01 s"));
+    check_near(number(read_file(&t, "scene.yaml"), "simulation.master.rtol"), 4.5e-4, 1e-12, 0);
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.4.rod.segments"), 32, 0, 0);
     put_library(line, "refuse");
     check_refused(attempt("main.fst", &library), BOUGH_FAILED,
                   "cannot run, not even with macro steps of 0.02 s and rtol 1.5e-5: ");
@@ -238,7 +235,7 @@ TEST(trials_call_the_library) {
                   BOUGH_SAMPLE_DISCON "' crashes in its first calls: Abort");
 }
 
-// Where no tolerance is good enough, the macro steps are halved, at most twice.
+// Where no setting is good enough, the macro steps are halved, at most twice.
 TEST(trials_shorten_the_macro_step) {
     char line[512];
     const edit library = {"parts/servo.dat", "0   PCMode", line};
@@ -255,12 +252,14 @@ TEST(trials_shorten_the_macro_step) {
                   "macro steps of 0.000625 s and rtol 1.5e-5: ");
 }
 
-static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound, bool *by_air) {
+static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound, bool finer,
+                             bool *by_air) {
     scene->simulation.master.rtol = rtol;
-    return bough_import_trial(t->arena, scene, 10, bound, by_air);
+    return bough_import_trial(t->arena, scene, 10, bound, finer, by_air);
 }
 
-// Errors fall with the tolerance, so that some bound lies between those of two.
+// Errors fall with the tolerance, so that some bound lies between those of two. Those of the mesh alone fail
+// only where a finer one can be tried.
 TEST(trials_judge_errors) {
     trial t = import(&(edit){"parts/servo.dat", "5E+07   YawSpr", "0   YawSpr"});
     char path[SCRATCH_PATH];
@@ -268,17 +267,21 @@ TEST(trials_judge_errors) {
     bough_errors errors = {.arena = t.arena};
     bough_scene *scene;
     check_ok(bough_scene_read(t.arena, NULL, path, NULL, 0, &errors, &scene));
+    scene->simulation.master.step = 0.01;
     bool by_air;
-    bough_status status = try_with(&t, scene, 1e-3, 0, &by_air);
+    check_ok(try_with(&t, scene, 1e-7, 4e-3, false, &by_air));
+    check_fails(try_with(&t, scene, 1e-7, 4e-3, true, &by_air), BOUGH_FAILED, "errs by");
+    for (int i = 0; i < scene->n_body; i++) scene->body[i].rod.n_segment = i == 0 ? 20 : 32;
+    bough_status status = try_with(&t, scene, 1e-3, 0, false, &by_air);
     assert_string_equal(status.message, "");
     double bound = 1;
-    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound, &by_air), bough_is_ok(&status)))
+    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound, false, &by_air), bough_is_ok(&status)))
         bound /= 4;
     check_fails(status, BOUGH_FAILED, "the error bound");
     assert_false(by_air);
-    status = try_with(&t, scene, 1e-7, bound, &by_air);
+    status = try_with(&t, scene, 1e-7, bound, false, &by_air);
     assert_string_equal(status.message, "");
-    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-7, bound, &by_air), bough_is_ok(&status)))
+    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-7, bound, false, &by_air), bough_is_ok(&status)))
         bound /= 4;
     check_fails(status, BOUGH_FAILED, "the sampling of the air");
     assert_true(by_air);

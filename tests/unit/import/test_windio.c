@@ -102,7 +102,7 @@ TEST(turbine_has_the_files_values) {
     snprintf(words, sizeof words, "rotate y %.10g deg", -9 / acos(-1.0));
     assert_string_equal(text(s, "bodies.4.joint.placement.1"), words);
     check_near(number(s, "bodies.5.pitch"), 3.6 / acos(-1.0), 1e-9, 0);
-    check_near(number(s, "bodies.5.rod.segments"), 32, 0, 0);
+    check_near(number(s, "bodies.5.rod.segments"), 24, 0, 0);
     check_near(number(s, "bodies.5.rod.grading"), 0.2, 0, 0);
     check_near(number(s, "aero.wind.speed"), 0.75 * 3 * 11 * cos(0.05) / 7, 1e-5, 0);
     check_near(number(s, "control.law.rated_speed"), 0.99 * 30, 1e-9, 0);
