@@ -61,7 +61,7 @@ typedef struct bough_integrator_options {
     int most_order; // of IDA; 0: 5
     bool by_bdf;    // beside a run by BDF: the automatic choice begins with CVODE
     bool coarse;    // of long steps: the Rosenbrock method takes a third of the usual damping to cover old
-                    // tangents, and renews them after half the usual steps; the automatic choice of a
+                    // tangents, and renews them after fewer steps; the automatic choice of a
                     // method has one more
 } bough_integrator_options;
 

@@ -8,6 +8,7 @@ enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // steps with the same ∂f/∂t; every macro step finds it anew
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
+enum { COARSE_AGE = 20 };  // the same of long steps
 enum { UNDAMPED_AGE = 2 }; // without damping, until the age is chosen by its effect
 
 static const double gamma_h = 0.4358665215084590; // γ
@@ -97,7 +98,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     rosenbrock *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
     m->ode = *ode;
-    m->kept = options->coarse ? MOST_AGE / 2 : MOST_AGE;
+    m->kept = options->coarse ? COARSE_AGE : MOST_AGE;
     if (options->coarse) m->ode.elastic_rate /= 3;
     m->find = find_alone;
     m->finder = m;

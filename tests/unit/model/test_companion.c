@@ -106,6 +106,9 @@ TEST(the_whole_error_is_estimated) {
         beside *b = run_beside(arena, "apps/turbine/runup.yaml", sets, truth_sets, 0, watched);
         check_estimates(b, 1 / 3., 5);
         for (int w = 6; w < 8 && c == 1; w++) assert_true(b->estimate[w] > b->error[w] / 2); // RootF
+        // tangents serve nearly as many steps as the run's
+        bough_statistics coarser = bough_master_statistics(b->r.companion->coarser.simulation->master);
+        assert_true(coarser.jacobians < coarser.steps / 14);
     }
 }
 
