@@ -275,14 +275,14 @@ TEST(trials_judge_errors) {
     bough_status status = try_with(&t, scene, 1e-3, 0, false, &by_air);
     assert_string_equal(status.message, "");
     double bound = 1;
-    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound, false, &by_air), bough_is_ok(&status)))
-        bound /= 4;
+    do status = try_with(&t, scene, 1e-3, bound /= 4, false, &by_air);
+    while (bound > 1e-9 && bough_is_ok(&status));
     check_fails(status, BOUGH_FAILED, "the error bound");
     assert_false(by_air);
     status = try_with(&t, scene, 1e-7, bound, false, &by_air);
     assert_string_equal(status.message, "");
-    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-7, bound, false, &by_air), bough_is_ok(&status)))
-        bound /= 4;
+    do status = try_with(&t, scene, 1e-7, bound /= 4, false, &by_air);
+    while (bound > 1e-9 && bough_is_ok(&status));
     check_fails(status, BOUGH_FAILED, "the sampling of the air");
     assert_true(by_air);
 }

@@ -183,15 +183,9 @@ TEST_WITH(hawc_files_are_boxes, set_up, tear_down) {
     char path[3][SCRATCH_PATH];
     const char *const *file;
     write_hawc(p, path, &file);
-    bough_hawc_def d = {.file = {file[0], file[1], file[2]},
-                        .nx = N_T,
-                        .ny = N_Y,
-                        .nz = N_Z,
-                        .dx = 5,
-                        .dy = 20,
-                        .dz = 30,
-                        .height = 90,
-                        .mean = 10};
+    bough_hawc_def d = {
+        .nx = N_T, .ny = N_Y, .nz = N_Z, .dx = 5, .dy = 20, .dz = 30, .height = 90, .mean = 10};
+    memcpy(d.file, file, sizeof d.file);
     bough_wind_box box;
     check_ok(bough_wind_hawc_read(p->arena, &d, &box));
     check_hawc(&box, 1, 1, 10, 10);

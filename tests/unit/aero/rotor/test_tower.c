@@ -65,12 +65,9 @@ static const double six_metres[] = {6, 6}, two_heights[] = {0, 100};
 
 static bough_tower build_kind(bough_arena *arena, bough_tower_influence influence, bough_tower_shadow shadow,
                               const double *drag) {
-    const bough_tower_def def = {.n = 2,
-                                 .height = two_heights,
-                                 .diameter = six_metres,
-                                 .drag = drag,
-                                 .influence = influence,
-                                 .shadow = shadow};
+    bough_tower_def def = {.n = 2, .height = two_heights, .diameter = six_metres, .drag = drag};
+    def.influence = influence;
+    def.shadow = shadow;
     bough_tower tower;
     bough_tower_build(arena, &def, &tower);
     return tower;

@@ -13,15 +13,17 @@ typedef struct bent {
     bough_rod_static work;
 } bent;
 
-static bent straight_rod(bough_arena *arena, int n, double length, const double stiffness[6]) {
+static bent rod_at_rest(bough_arena *arena, bough_rod_model *model) {
     const double at_rest[BOUGH_ROD_INPUTS] = {0};
-    bent b;
-    b.model = sample_uniform(arena, n, length, stiffness, 0, beam_inertia);
-    b.state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * n);
-    bough_rod_loads_init(&b.loads, arena, b.model);
-    bough_rod_static_init(&b.work, arena, b.model);
-    bough_rod_rest_state(b.model, at_rest, b.state);
+    bent b = {.model = model, .state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * model->n)};
+    bough_rod_loads_init(&b.loads, arena, model);
+    bough_rod_static_init(&b.work, arena, model);
+    bough_rod_rest_state(model, at_rest, b.state);
     return b;
+}
+
+static bent straight_rod(bough_arena *arena, int n, double length, const double stiffness[6]) {
+    return rod_at_rest(arena, sample_uniform(arena, n, length, stiffness, 0, beam_inertia));
 }
 
 static void solve(bent *b, bough_rod_static_options options) {
@@ -107,15 +109,10 @@ TEST(load_that_falls_along_the_rod_bends_it_as_beam_theory_says) {
 
 static bent table_rod(bough_arena *arena, bough_section_table table, int n) {
     bough_rod_def def;
-    bent b;
+    bough_rod_model *model;
     check_ok(bough_section_discretise(arena, &table, n, &def));
-    check_ok(bough_rod_create(arena, &def, &b.model));
-    const double at_rest[BOUGH_ROD_INPUTS] = {0};
-    b.state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * n);
-    bough_rod_loads_init(&b.loads, arena, b.model);
-    bough_rod_static_init(&b.work, arena, b.model);
-    bough_rod_rest_state(b.model, at_rest, b.state);
-    return b;
+    check_ok(bough_rod_create(arena, &def, &model));
+    return rod_at_rest(arena, model);
 }
 
 // A strip of 1.5 m, bending stiffness 2 and 36, torsional 3, its ends turned by `pretwist`.
