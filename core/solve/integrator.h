@@ -60,9 +60,9 @@ typedef struct bough_integrator_options {
     int most_steps; // of IDA, CVODE and the Rosenbrock method in a macro step; 0: their own limits
     int most_order; // of IDA; 0: 5
     bool by_bdf;    // beside a run by BDF: the automatic choice begins with CVODE
-    bool coarse;    // of long steps: the Rosenbrock method takes a third of the usual damping to cover old
-                    // tangents, and renews them after fewer steps; the automatic choice of a
-                    // method has one more
+    bool coarse; // of long steps: Radau IIA does not divide macro steps evenly; the Rosenbrock method takes
+                 // a third of the usual damping to cover old tangents, and renews them after fewer
+                 // steps; the automatic choice of a method has one more
 } bough_integrator_options;
 
 // Options besides rtol that only some methods read.

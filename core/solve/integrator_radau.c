@@ -59,6 +59,7 @@ typedef struct radau {
     double *pair;            // (n × 2)
     int *real_pivot, *complex_pivot;
     double present; // the step size whose factors are really there
+    bool coarse;    // its steps shall not be those of the run beside it
     bough_statistics count;
 } radau;
 
@@ -92,6 +93,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     // follow rtol.
     double inner = 0.1 * pow(rtol, 2.0 / 3);
     for (int i = 0; i < ode->n; i++) r->weight[i] = 1 / (inner * ode->scale[i]);
+    r->coarse = options->coarse;
     r->newton_tolerance = fmax(10 * 2.3e-16 / inner, fmin(0.03, sqrt(inner)));
     return r;
 }
@@ -381,7 +383,7 @@ static bough_status cross(radau *r, double t1) {
         if (h < shortest) return failure(r, "finds no step that is short enough");
         bool last = 1.0001 * h >= left;
         if (last) h = left;
-        if (!last && 2 * h > left) h = 0.5 * left; // no tiny last step
+        if (!last && 2 * h > left && !r->coarse) h = 0.5 * left; // no tiny last step
         attempt(r, last ? t1 : past->time + h, h);
     }
     return bough_ok();

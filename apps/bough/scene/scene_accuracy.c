@@ -26,21 +26,23 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
 // method.
 enum { FEW_STATES = 65 };
 
-// Whether the scene has only rigid bodies, in closed loops or without samples that end steps, few enough for
+// Whether the scene has only rigid bodies, in closed loops or without samples and contacts, few enough for
 // Radau IIA: at equal tolerance it takes half the time of the other methods and errs by a tenth. Its steps
 // are long and hardly ever end near a singular position, from which errors of BDF can let a linkage continue
 // the other way; order 5 conserves the momentum of a rotating free body better.
 bool bough_scene_suits_radau(const bough_scene *s) {
     int states = 0;
+    bool jumps = s->aero.node || s->control.node;
     for (int i = 0; i < s->n_body; i++) {
         const bough_scene_body *b = &s->body[i];
         if (b->fidelity != BOUGH_SCENE_RIGID || b->joint.kind < 0)
             return false; // reported as an unknown kind
         int own = bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
         states += b->repeat * own;
+        jumps = jumps || b->joint.spring.stop_stiffness > 0;
     }
     if (s->n_closure > 0) return states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
-    return states <= FEW_STATES && !s->aero.node && !s->control.node;
+    return states <= FEW_STATES && !jumps;
 }
 
 // Whether the scheme integrates all bodies as one system; false after an error in its name.

@@ -315,6 +315,18 @@ TEST(beside_waves_of_a_blow_the_mesh_is_finer) {
     check_estimates(b, 0.7, 1.5);
 }
 
+// Where a macro step takes Radau IIA one step, twice its length takes two: equal ones would be the run's.
+TEST(companions_by_radau_take_other_steps) {
+#define OSCILLATOR                                                                                           \
+    "simulation={duration: 2 s, macro_step: 10 ms, accuracy: 0.1}", "gravity=[0, 0, 0]",                     \
+        "bodies[ball].mass=1",                                                                               \
+        "bodies[ball].joint={kind: prismatic, axis: z, parent: ground, position: 0.1 m, stiffness: 2116}"
+    static const char *const sets[] = {OSCILLATOR, NULL}, *const channel[] = {"ballPos", "ballVel", NULL},
+                             *const truth[] = {OSCILLATOR, "simulation.master.rtol=1e-10", NULL};
+    check_arena(arena);
+    check_estimates(run_beside(arena, "tests/data/scenes/ball.yaml", sets, truth, 0, channel), 1, 3);
+}
+
 // It stands beside sub-solvers with a loose tolerance, whatever that of the master is, and beside a coupling
 // that errs more than they do.
 TEST(loose_sub_solvers_have_a_finer_solution) {

@@ -68,12 +68,9 @@ TEST(bushing_is_linear_along_and_about_an_axis) {
     const bough_marker_def markers[] = {{"ground", BOUGH_GROUND, bough_transform_identity()},
                                         {"plate", 0, bough_transform_identity()}};
     const bough_bushing_def bushing = {{0, 1}, {100, 100, 50, 30, 30, 8}, {0, 0, 0.8, 0, 0, 0.4}};
-    bough_tree_def def = {.n_bodies = 1,
-                          .bodies = &b,
-                          .n_markers = 2,
-                          .markers = markers,
-                          .n_bushings = 1,
-                          .bushings = &bushing};
+    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 2, .markers = markers};
+    def.n_bushings = 1;
+    def.bushings = &bushing;
     fixture f = build(&def, 1e-10);
     double t = 2.3, delta = 0.2, w = sqrt(25 - delta * delta);
     go_to(&f, t);

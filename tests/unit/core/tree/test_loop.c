@@ -466,13 +466,10 @@ TEST(arches_are_assembled) {
     marker[0].placement.position = bough_v3(1, 0, 0);
     marker[1].placement.position = bough_v3(7.75, 0, 0);
     const bough_closure_def closure = {"pin", BOUGH_JOINT_SPHERICAL, {0, 1}, {0, 0, 1}, {1, 0, 0}};
-    bough_tree_def def = {.gravity = down_z,
-                          .n_bodies = RODS,
-                          .bodies = body,
-                          .n_markers = 2,
-                          .markers = marker,
-                          .n_closures = 1,
-                          .closures = &closure};
+    bough_tree_def def = {.gravity = down_z, .n_bodies = RODS, .bodies = body, .n_markers = 2};
+    def.markers = marker;
+    def.n_closures = 1;
+    def.closures = &closure;
     fixture f = build_with(&def, BOUGH_RADAU5, 1e-8);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     check_closed(&f, 1e-9);

@@ -293,13 +293,9 @@ TEST(root_inertia_is_felt_as_a_welded_body) {
     bough_marker_def marker = {"flange", 0, b[1].joint};
     bough_port_def port = {.root = bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
     bough_tree_def welded = {.gravity = down_z, .n_bodies = 2, .bodies = b};
-    bough_tree_def ported = {.gravity = down_z,
-                             .n_bodies = 1,
-                             .bodies = b,
-                             .n_markers = 1,
-                             .markers = &marker,
-                             .n_ports = 1,
-                             .ports = &port};
+    bough_tree_def ported = {.gravity = down_z, .n_bodies = 1, .bodies = b, .n_ports = 1, .ports = &port};
+    ported.n_markers = 1;
+    ported.markers = &marker;
     fixture f = build(&welded, 1e-6), g = build(&ported, 1e-6);
     double a[MOST], c[MOST], zero[6] = {0};
     f.s.ops->derivative(f.s.self, 0, f.m->state, NULL, a);
@@ -313,13 +309,9 @@ TEST(ground_fixed_tree_has_no_states) {
     b.joint.rotation = turned(0, BOUGH_PI / 2, 0); // x to −z
     bough_marker_def marker = {"clamp", 0, bough_transform_identity()};
     bough_port_def port = {.root = {.mass = 1}};
-    bough_tree_def def = {.gravity = down_z,
-                          .n_bodies = 1,
-                          .bodies = &b,
-                          .n_markers = 1,
-                          .markers = &marker,
-                          .n_ports = 1,
-                          .ports = &port};
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b, .n_ports = 1, .ports = &port};
+    def.n_markers = 1;
+    def.markers = &marker;
     fixture f = build(&def, 1e-6);
     assert_int_equal(f.s.n_state, 0);
     assert_int_equal(f.s.n_input, 6);
