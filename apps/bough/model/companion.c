@@ -228,8 +228,8 @@ static bool is_large(const bough_companion *c, int i, double error) {
 static const double most_growth = 2; // of an error since the finer solution ended
 
 // Errors that grew in the second half of what the finer solution followed, until it would have taken too much
-// work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays. At
-// twice their size they may still grow.
+// work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays.
+// Beyond twice their size they may grow unseen.
 static void extrapolate(bough_companion *c) {
     const bough_finer *f = &c->finer;
     double followed = f->left - f->from, t = c->run->master->time;

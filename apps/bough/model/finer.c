@@ -97,8 +97,8 @@ void bough_finer_go_on(bough_finer *f, const bough_master *run) {
     f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
 }
 
-// Whether it has failed by more than the most steps that its work allows, and the run may pass over the same
-// vibrations: it takes less than a quarter of the most that the finer solution may ever take.
+// Whether it has failed because it needs more steps than are allowed, and the run may pass over the same
+// vibrations: the run takes less than a quarter of the steps that a finer solution has at most.
 static bool gave_up(const bough_finer *f, int allowed, long steps, long by_run) {
     int most = f->other.simulation->scene->simulation.master.most_steps;
     return f->status.code == BOUGH_FAILED && steps >= allowed / 5 && 4 * by_run < most;
