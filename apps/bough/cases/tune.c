@@ -159,7 +159,7 @@ static void choose(bough_tune_state *t) {
 static const double longest_period = 0.1; // between samples of the air [s]
 static const double loosest = 0.02;       // rtol
 
-// The longest round period up to `wanted` [s] that is one or two macro steps of the scene.
+// The longest round period up to 1.1 `wanted` [s] that is one or two macro steps of the scene.
 static double period_up_to(const bough_scene *scene, double wanted, double *macro_step) {
     static const double round_one[] = {10, 8, 6.25, 5, 4, 3.125, 2.5, 2, 1.6, 1.25};
     bough_scene s = *scene;
@@ -167,7 +167,7 @@ static double period_up_to(const bough_scene *scene, double wanted, double *macr
         for (size_t k = 0; k < sizeof round_one / sizeof *round_one; k++) {
             double period = round_one[k] * unit;
             s.aero.rate = 1 / period;
-            for (int parts = 1; parts <= 2 && period <= wanted * (1 + 1e-9); parts++) {
+            for (int parts = 1; parts <= 2 && period <= 1.1 * wanted; parts++) {
                 *macro_step = period / parts;
                 if (bough_scene_step_fits(&s, *macro_step)) return period;
             }
