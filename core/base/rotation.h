@@ -35,7 +35,7 @@ bough_quaternion bough_quaternion_exponential(bough_vec3 phi);
 // The rotation vector of p, of norm at most π [rad].
 bough_vec3 bough_quaternion_logarithm(bough_quaternion p);
 
-// theory (3): R(p) = (p₀² − |𝐩|²)E + 2 𝐩𝐩ᵀ + 2 p₀ ξ(𝐩), for |p| = 1.
+// theory (2, 3): R(p) = (p₀² − |𝐩|²)E + 2 𝐩𝐩ᵀ + 2 p₀ ξ(𝐩), for |p| = 1.
 BOUGH_INLINE bough_mat3 bough_rotation_matrix(bough_quaternion p) {
     double w = p.w, x = p.x, y = p.y, z = p.z;
     return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},

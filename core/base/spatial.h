@@ -120,7 +120,7 @@ static inline bough_inertia bough_inertia_add(bough_inertia a, bough_inertia b) 
                            bough_mat3_add(a.rotational, b.rotational)};
 }
 
-// The inertia of a mass [kg] at `centre` [m], from that about its centre [kg m²].
+// The inertia of a mass [kg] at `centre` [m], from that about its centre [kg m²] as in theory (10).
 static inline bough_inertia bough_inertia_of(double mass, bough_vec3 centre, bough_mat3 about) {
     bough_vec3 first = bough_scale(mass, centre);
     return (bough_inertia){mass, first,

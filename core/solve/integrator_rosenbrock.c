@@ -138,8 +138,7 @@ static void choose_age(rosenbrock *m) {
 // The age at which tangents are renewed though no step has failed.
 static int oldest(const rosenbrock *m) { return (int)fmin(m->most_age, m->useful); }
 
-// What turns is linearised where it will be in the middle of the steps to come, by the last step. theory
-// (115)
+// theory (115): what turns is linearised where it will be, by the last step, in the middle of those to come.
 static bool linearise(rosenbrock *m, double t, const double *y, double h) {
     const bough_ode *ode = &m->ode;
     if (!ode->linearise_ahead) return ode->linearise(ode->self, t, y);

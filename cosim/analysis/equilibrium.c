@@ -89,7 +89,7 @@ static bool is_found(const search *s, double longest, double change, double befo
 }
 
 // Takes the motion out of the state after a step; with a kinetic energy, once that falls below the one
-// `before`. Theory (112).
+// `before`: theory (112).
 static void rest(const bough_equilibrium_def *def, double *before, double *state) {
     double now = def->kinetic ? def->kinetic(def->self, state) : 0;
     bool falls = def->kinetic == NULL || now < *before;

@@ -1,6 +1,5 @@
 // The shapes of a modal piece: clamped modes, rigid motions and static deflections, from the rod's own
-// tangents at rest, orthonormal in the mass and, by Rayleigh and Ritz, in the stiffness (docs/theory.md,
-// "Modal bodies").
+// tangents at rest, orthonormal in the mass, theory (15), and, by Rayleigh and Ritz, in the stiffness.
 #include "core/base/linalg.h"
 #include "core/base/spatial.h"
 #include "flexbody/modal/modal.h"

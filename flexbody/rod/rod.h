@@ -1,5 +1,4 @@
-// The discrete geometrically exact Cosserat rod (docs/theory.md, "The rod"): constant model and
-// scratch.
+// The geometrically exact Cosserat rod, theory (1, 8, 9), divided into segments: constant model and scratch.
 //
 // Vertex 0 is the root: it is welded to the body reference frame (BRF), whose motion is an
 // input. Of a rod that carries bodies at its end, vertex N belongs to them, and its motion is an

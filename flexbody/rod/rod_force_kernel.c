@@ -71,7 +71,7 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain e = elastic_strain(shape, inverse[n], rest, s, n);
         strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
-        // stress of the elastic law and of the viscosity, and its forces on the two vertices
+        // stress of the elastic law and of the viscosity, theory (4, 5), and its forces on the two vertices
         strain elastic = segment_stress(c, gradient, BOUGH_LANES, n, e);
         strain viscous = symmetric_times(d, BOUGH_LANES, n, rate);
         segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);

@@ -69,7 +69,7 @@ BOUGH_INLINE variations variations_along(const bough_rod_model *m, const double 
 
 // -- the wrenches ---------------------------------------------------------------------------------
 
-// The first segment's force on the root, moment in BRF axes.
+// theory (12): all that the carrier feels is the first segment's force on the root; moment in BRF axes.
 static void put_root(const bough_rod_model *m, segment_force f, double *wrench) {
     bough_v3_store(f.f, wrench);
     bough_v3_store(bough_mat3_mul(m->root, f.ll), wrench + 3);

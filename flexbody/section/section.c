@@ -8,7 +8,7 @@
 
 typedef double matrix6[6][6];
 
-// D = diag(√μ) C diag(√μ)
+// theory (7): D = diag(√μ) C diag(√μ)
 static void section_damping(const double mu[6], const double *stiffness, double *damping) {
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {

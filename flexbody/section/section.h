@@ -8,7 +8,7 @@
 typedef struct bough_section_station {
     bough_vec3 position;  // of the reference axis in the BRF [m]
     double twist;         // section axes are rotated by −twist about the axis' tangent [rad]
-    double stiffness[21]; // upper triangle by rows, in section axes [N, N m, N m²]
+    double stiffness[21]; // theory (6): upper triangle by rows, in section axes [N, N m, N m²]
     double mass;          // per length [kg/m]
     double centre[2];     // mass centre in section axes [m]
     double inertia[4];    // Ixx Iyy Ixy Izz about the reference axis per length [kg m]

@@ -163,7 +163,8 @@ typedef struct bough_vertex_motion {
 // The largest number of vertices of a beam; 1 without beams.
 size_t bough_simulation_most_vertices(const bough_simulation *s);
 
-// Motion of all vertices of a beam (n_segment + 1) in ground axes, from `view` and the rod's state.
+// theory (13): motion of all vertices of a beam (n_segment + 1) in ground axes, by `view` and the rod's
+// state.
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
                                   bough_vertex_motion *vertex);
 
