@@ -224,7 +224,7 @@ endfunction()
 
 # A file that grows beyond this holds more than one concept.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.[ch] ${ROOT}/flexbody/*.[ch] ${ROOT}/aero/*.[ch]
-  ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch])
+  ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch] ${ROOT}/tests/*.[ch])
 foreach(file IN LISTS files)
   count_lines(${file} count)
   if(count GREATER 600)
