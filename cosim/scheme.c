@@ -66,7 +66,7 @@ const bough_scheme *bough_scheme_advised(void) {
     return schemes[i];
 }
 
-// The advised scheme in the form that it calls its most damped.
+// The advised scheme with the settings that damp most.
 bough_scheme_options bough_scheme_damped(const bough_scheme_options *options) {
     const bough_scheme *advised = bough_scheme_advised();
     bough_scheme_options damped = *options;

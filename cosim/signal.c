@@ -24,7 +24,7 @@ void bough_signal_linear(bough_signal *s, int j, double start, double end) {
 }
 
 void bough_signal_hermite(bough_signal *s, int j, bough_signal_end start, bough_signal_end end) {
-    // the slopes per step, and the bend that meets value and slope at t1
+    // the slopes per step, and the bend that gives value and slope at t1
     double length = s->t1 - s->t0, r0 = length * start.rate, r1 = length * end.rate, bend[2];
     bough_cubic_bend(end.value - start.value, r0, r1, 1, bend);
     set(s, j, start.value, r0, bend[0], bend[1]);

@@ -192,7 +192,7 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held. A member whose states are
-// coordinates of the interface hands over r_i instead: the interface solves for them.
+// coordinates of the interface leaves r_i to the interface, which solves for them.
 void bough_whole_solve_of(bough_whole *whole, int i) {
     const bough_assembly *a = whole->assembly;
     const bough_system *s = &a->member[i]->system;
@@ -242,7 +242,7 @@ static void solve_coupling(bough_whole *whole) {
     each(whole, ALL, complete);
 }
 
-// Without regard to held states: first the members by themselves.
+// As if no states were held: first the members by themselves.
 static void solve_free(bough_whole *whole, double *x) {
     bough_whole_begin_solution(whole, x);
     each(whole, ALL, bough_whole_solve_of);
@@ -254,7 +254,7 @@ void bough_whole_close(bough_whole *whole, double *change) {
     bough_interface_solve(whole->interface, change);
 }
 
-// Member by member; most have nothing to take out.
+// Member by member; without quaternions there is nothing to remove.
 void bough_whole_project(const bough_whole *whole, const double *state, double *x) {
     const bough_assembly *a = whole->assembly;
     for (int i = 0; i < a->n_member; i++) {
@@ -264,7 +264,7 @@ void bough_whole_project(const bough_whole *whole, const double *state, double *
     }
 }
 
-// The border's multipliers make the held entries of its solutions vanish.
+// The border: responses of all states to a force on each held one; its rows of held states are factored.
 static bool factor_border(bough_whole *whole) {
     int n = whole->assembly->n_state, held = whole->n_held;
     for (int j = 0; j < held; j++) {
@@ -279,11 +279,11 @@ static bool factor_border(bough_whole *whole) {
     return held == 0 || bough_dense_factor(held, whole->multiplier, whole->held_pivot);
 }
 
-// A solution without what the multipliers add that keep the held states.
+// Subtracts the response to the forces that hold the held states, so that these are zero.
 static void hold(bough_whole *whole, double *x) {
     int n = whole->assembly->n_state, held = whole->n_held;
     if (held == 0) return;
-    // the forces that hold them, then the response of all states to these
+    // the forces, then the response of all states to them
     for (int i = 0; i < held; i++) whole->held_force[i] = x[whole->held[i]];
     bough_dense_solve(held, 1, whole->multiplier, whole->held_pivot, whole->held_force);
     for (int j = 0; j < held; j++) {

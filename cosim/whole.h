@@ -71,7 +71,7 @@ void bough_whole_solve(bough_whole *whole, double *x);
 // How all states, x (n_state), follow a change by 1 of one output of a member that does not move by itself.
 void bough_whole_follow(bough_whole *whole, int output, double *x);
 
-// Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
+// Removes the changes of quaternions' lengths from a change x (n_state) of `state`.
 void bough_whole_project(const bough_whole *whole, const double *state, double *x);
 
 // The change of all inputs that closes the interface over a change (n_input) of the leaders' inputs from

@@ -166,7 +166,7 @@ set(uncited ${numbers})
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/core/*.[ch] ${ROOT}/flexbody/*.[ch] ${ROOT}/aero/*.[ch]
   ${ROOT}/cosim/*.[ch] ${ROOT}/apps/*.[ch] ${ROOT}/tests/*.[ch])
 foreach(file IN LISTS files)
-  file(STRINGS ${ROOT}/${file} lines REGEX "theory \\([0-9]" ENCODING UTF-8)
+  file(STRINGS ${ROOT}/${file} lines REGEX "[Tt]heory \\([0-9]" ENCODING UTF-8)
   foreach(line IN LISTS lines)
     string(REGEX MATCHALL "theory \\([0-9, ]+\\)" citations "${line}")
     string(REGEX MATCHALL "[0-9]+" cited "${citations}")

@@ -130,7 +130,7 @@ BOUGH_INLINE response in_balance(const bough_rotor *rotor, blade_rows r, int j, 
 }
 
 // At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere, and
-// without a wake there is none.
+// without a wake it is zero.
 BOUGH_INLINE response section_response(const bough_rotor *rotor, blade_rows r, bool delayed, double wake,
                                        int j, double normal, double slope) {
     response k = in_balance(rotor, r, j, normal, slope);

@@ -9,7 +9,7 @@ enum { N = BOUGH_LANES };
 
 // Lags of pressure and separation, in semi-chords.
 static const double pressure_time = 1.7, separation_time = 3.0;
-// The static polar alone from the second angle on, none of it up to the first [rad].
+// Weight of the static polar: 0 up to the first angle, 1 from the second on [rad].
 static const double fading = 40 * BOUGH_DEGREE, faded = 50 * BOUGH_DEGREE;
 // Slower than this there is no wake [m/s].
 static const double slow = 1e-3;

@@ -1,7 +1,7 @@
 // Texts as JSON strings, valid UTF-8 whatever they contain.
 #include "core/base/quote.h"
 
-// Bytes of the UTF-8 character at `text`, 0 if there is none: names of files may be anything.
+// Bytes of the UTF-8 character at `text`, 0 if there is none: names of files need not be text.
 static int character_length(const unsigned char *text) {
     int length = text[0] < 0x80   ? 1
                  : text[0] < 0xC2 ? 0

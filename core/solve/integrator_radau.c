@@ -35,7 +35,7 @@ static const double worthwhile = 1.2;
 // What a copy holds; the arrays follow it in `memory`.
 typedef struct history {
     double time, step;             // step: the next to try; 0: to be guessed
-    double start, length;          // of the last step; 0: no stages to go on from
+    double start, length;          // of the last step; 0: no stages to start from
     double factored;               // the step size the matrices are factored for; 0: none
     double accepted, error;        // of the last accepted step; 0: none yet
     double convergence, remainder; // of Newton's iteration: θ, θ/(1 − θ)

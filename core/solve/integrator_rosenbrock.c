@@ -48,7 +48,7 @@ typedef struct rosenbrock {
     double new_error;     // of the last step with new tangents, over h³ [s⁻³]
     double least;         // error of the steps since the tangents were found
     int age, most_age;    // steps since the tangents were found, and after which they are renewed
-    bool kept_twice;      // those of what deforms are older
+    bool kept_twice;      // those of deforming members are older
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     bough_rosenbrock_step now; // the step in progress
@@ -150,7 +150,7 @@ static bool linearise(rosenbrock *m, double t, const double *y, double h) {
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
     bool due = m->age == oldest(m), compare = undamped(m, gamma / gamma_h) && due && m->factored > 0;
     bool same = fabs(m->factored - gamma) <= rounding * gamma;
-    // tangents that served as long as they may are kept once more, of what deforms
+    // tangents of deforming members are kept for the same number of steps once more
     m->kept_twice = due && same && !compare && !m->kept_twice && m->age == m->kept;
     if (due) m->useful = fmin(older * m->useful, m->kept);
     // the last increment under old tangents, for comparison with renewed ones

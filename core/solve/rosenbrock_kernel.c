@@ -47,7 +47,7 @@ void AT(argument)(bough_rosenbrock_step *s, int i, int first, int last) {
 static void set_first_right_side(bough_rosenbrock_step *s, int first, int last) {
     double *restrict u = s->u[0], *restrict drift = s->drift;
     double h = s->h, f = s->gamma, d = slope[0] * h;
-    if (s->drifts) { // f at the step's end stands in it
+    if (s->drifts) { // it holds f at the step's end
 #pragma omp simd
         for (int k = first; k < last; k++) drift[k] = (drift[k] - u[k]) / h;
     }

@@ -91,7 +91,7 @@ static bough_twist rate_of(const bough_tree_data *d, const bough_frame *frame) {
     return frame->link < 0 ? none : bough_twist_to_child(&frame->placement, d->acceleration[frame->link]);
 }
 
-// x = G v̇ with the links' accelerations that stand in the data
+// x = G v̇ with the links' accelerations in the data
 static void find_rates(const bough_tree *tree, const bough_tree_data *d, double *x) {
     for (int c = 0; c < tree->n_closures; c++) {
         bough_twist a = rate_of(d, end_of(tree, c, 0)), b = rate_of(d, end_of(tree, c, 1));

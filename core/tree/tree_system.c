@@ -87,7 +87,7 @@ static void end_outputs(const tree_system *s, const double *state, double *out) 
     }
 }
 
-// δ(R u) = R (δu + δη × u); the links' tangents stand in the data.
+// δ(R u) = R (δu + δη × u); the links' tangents are in the data.
 static void end_tangents(const tree_system *s, const double *state, const double *change, double *out) {
     for (int e = 0; e < s->tree->n_ends; e++, out += BOUGH_END_OUTPUTS) {
         int i = s->tree->ends[e].link;

@@ -78,8 +78,8 @@ static double step(search *s, const double *state, bough_equilibrium_report *rep
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
 
-// Whether the state after a last step is the equilibrium: its change is none, or as small as rounding lets it
-// be. Shorter last steps leave more behind: what their changes, one after the other, sum up to must be none.
+// Whether the state after a last step is the equilibrium: its change is zero, or as small as rounding lets it
+// be. After shorter last steps the sum of all changes to come must be within the tolerance.
 static bool is_found(const search *s, double longest, double change, double before) {
     if (longest >= s->def->unit * BOUGH_EQUILIBRIUM_LONGEST)
         return change < s->def->tolerance || (change < rounding && !(change < contracting * before));
@@ -88,7 +88,7 @@ static bool is_found(const search *s, double longest, double change, double befo
     return isfinite(before) && change * ratio / (1 - ratio) < s->def->tolerance;
 }
 
-// Takes the motion out of the state after a step; with a kinetic energy, once that falls below the one
+// Sets the state to rest after a step; if a kinetic energy is given, only when that falls below the one
 // `before`: theory (112).
 static void rest(const bough_equilibrium_def *def, double *before, double *state) {
     double now = def->kinetic ? def->kinetic(def->self, state) : 0;

@@ -15,7 +15,7 @@
 typedef struct bough_stability {
     double growth;    // of the fastest growing oscillation [1/s]; negative: it decays
     double suspected; // the same, including uncertain eigenvalues; at least `growth` [1/s]
-    double rising;    // growth of what grows faster than it oscillates, of coupling or mechanics [1/s]
+    double rising; // growth of motions that grow faster than they oscillate, by coupling or mechanics [1/s]
     double frequency; // of the fastest growing oscillation [Hz]
     int body;         // the member on an interface with the largest part in it
 } bough_stability;

@@ -249,8 +249,8 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench);
 
-// Of a rod that carries bodies the root wrench, and that on what moves its last vertex, without the vertex'
-// inertia and weight: force in BRF axes, moment in section axes (6 each).
+// Of a rod that carries bodies: the wrench on its carrier, and that on the bodies at its end, without inertia
+// and weight of the last vertex: force in BRF axes, moment in section axes (6 each).
 void bough_rod_wrenches(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
                         const double *input, bough_rod_scratch *scratch, double *wrench);
 

@@ -28,7 +28,7 @@ BOUGH_INLINE void put_tile(const tile *t, lanes at, int column, bool added, doub
     }
 }
 
-// Column j of what the segments do to the vertex at their right end, by its own variation (`own`)
+// Column j of the forces of the segments on the vertex at their right end, by its own variation (`own`)
 // and by the left end's (`other`); or the same of the left end. A shift counts as Δx of the segment
 // on the left, −Δx of the one on the right; a segment pulls its left vertex by f and its right one
 // by −f; moments are those on either vertex.

@@ -82,7 +82,7 @@ static __attribute__((noinline)) void find_forces(const bough_rod_model *m, cons
     }
 }
 
-// A vector whose segments are all asked for goes straight to scratch, of another only those that are.
+// A vector of segments that are all wanted is written to scratch directly, of another only the wanted ones.
 bool AT(forces)(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
     double least = 1, cosine[BOUGH_WIDTH], some[9 * BOUGH_WIDTH];

@@ -27,8 +27,8 @@ void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, 
 
 // Loads per length in the axes of the segments' middles (12 × n_segment) from those in BRF axes (same);
 // `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)). Adds to the
-// loads on the vertices (6 × (n_segment + 1), BRF axes) the moments about the segments' chords of what
-// acts on the axis, which bends away from them under load.
+// loads on the vertices (6 × (n_segment + 1), BRF axes) their moments about the segments' chords: they
+// act on the axis, which bends away from the chords.
 void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
                          double *load);
 

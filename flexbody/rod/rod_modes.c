@@ -2,7 +2,7 @@
 
 #include "core/base/eigen.h"
 
-static const double rounding = 1e-11; // damping ratios below it are none
+static const double rounding = 1e-11; // smaller damping ratios are zero
 
 // |x_k|² of a complex shape.
 static double square_of(const bough_eigen_pair *pair, int k) {

@@ -3,7 +3,7 @@
 #include "flexbody/rod/rod_segment.h"
 #include "flexbody/section/section_axis.h"
 
-// Total mass, first and second moments are exact. Of the two ways to lump a segment's mass that are so,
+// A segment's mass is lumped in one of two ways, with exact total mass, first and second moments:
 //   fine:  by hat functions, where the chord carries it. Their error in the kinetic energy of bending
 //          waves, that of the trapezoidal rule for ρ w², is a difference of end values
 //          (Euler–Maclaurin) and is removed by first moments ±½∫ρ (s − a)(b − s)/h at the two
@@ -53,7 +53,7 @@ typedef struct lumping {
     bough_vertex_inertia fine[2], rigid[2]; // on the two vertices
 } lumping;
 
-// A mass element: where it is and how it stands in the axes of a vertex.
+// A mass element: its position and orientation in the axes of a vertex.
 typedef struct element {
     double mass;
     bough_vec3 offset, centre; // of the axis from the vertex or the chord, of the mass centre from it
@@ -122,8 +122,7 @@ static void add_mass(void *context, const bough_section_point *p) {
     c->offset_curvature = bough_axpy(bubble, centre, c->offset_curvature);
 }
 
-// First moments of the fine lumps, and what they make of the mass centre's offset in the products of
-// inertia.
+// First moments of the fine lumps, and the products of inertia that these and the mass centre's offset give.
 static void add_end_terms(lumping *c) {
     const bough_rod_def *def = c->def;
     int k = c->segment;
@@ -201,7 +200,7 @@ static double central_inertia(const bough_vertex_inertia *v) {
     return 0.5 * (xx + yy) - sqrt(half * half + xy * xy);
 }
 
-// What a vertex lacks for its fine first moment, which a tenth more would still balance.
+// The inertia that a vertex lacks for its fine first moment, with a tenth of it to spare.
 static double lack(const bough_vertex_inertia *v, double shift) {
     bough_vertex_inertia without = *v;
     without.moment.z -= shift;

@@ -19,7 +19,7 @@ typedef struct work {
     int *row;                        // (n_air) of the memory
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
-    double *motion;                  // (n) the state that the air has met last; NaN: not known
+    double *motion;                  // (n) for which the air was advanced last; NaN: not known
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
     bough_air_mean *mean;            // that columns are added to; NULL: they are set
     double *slope;                   // (n + n_air) of a column

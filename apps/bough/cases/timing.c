@@ -99,7 +99,7 @@ static void write_csv(const void *self, FILE *f) {
 
 // -- plot.svg: CPU time over the numbers of each axis -----------------------------------------------
 
-// A value as a pure number; 0: it is none.
+// A value as a pure number; 0: it is not one.
 static double number_of(const bough_study_axis *axis, int k) {
     char *end;
     double number = strtod(axis->value.item[k].value, &end);

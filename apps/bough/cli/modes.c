@@ -450,7 +450,7 @@ typedef struct modes_options {
     bough_options common;
     bough_texts sweep;       // "key=value, value, ..."
     bool until;              // unstable
-    const char *sensitivity; // of this mode; NULL: of none
+    const char *sensitivity; // of this mode; NULL: not wanted
 } modes_options;
 
 static bough_status read_until(const bough_option *row, const char *text, void *field) {

@@ -426,7 +426,7 @@ typedef struct growth {
     double part;      // of the way from the first point to the next
     double rate;      // of the fastest growing motion [1/s]; 0: rounding
     double frequency; // of that, damped [Hz]; 0: a divergence
-    const char *name; // what moves in it
+    const char *name; // of the moving body and shape
     double slope;     // at the boundary: of the rate over that part [1/s]
     double ratio;     // with the other mesh: the error of the scene's mesh over the difference of the two
 } growth;

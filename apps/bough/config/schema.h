@@ -167,7 +167,7 @@ bool bough_quantity(const char *text, bough_dimension dimension, double *value, 
 void bough_dimension_expected(bough_dimension dimension, char text[96]);
 
 // A unit such as "kN", "rad/s", "kg m^2" in base units: its factor and the exponents of m, kg, s and rad.
-// False with a reason for what is none.
+// False with a reason for a text that is not one.
 enum { BOUGH_BASE_UNITS = 4 };
 bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_UNITS], char why[160]);
 
@@ -199,7 +199,7 @@ const char *bough_key_example(const bough_key *key);
 // Writes every key below the schema as a list in Markdown, indented by `indent`.
 void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);
 
-// Writes a JSON Schema that a file which one of the n schemas describes meets.
+// Writes a JSON Schema of the files that any of the n schemas describes.
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream);
 
 // "rad/s"; "" for a pure number.

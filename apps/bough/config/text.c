@@ -1,5 +1,5 @@
 // The tree is built from libyaml's events, not by its document loader: that one takes minutes on
-// hostile nesting and copies nothing of the positions of aliases. Children of open containers wait
+// hostile nesting and does not keep the positions of aliases. Children of open containers wait
 // on one stack of pointers; a container that closes takes its slice of the stack.
 #include "apps/bough/config/text.h"
 

@@ -10,7 +10,7 @@ struct bough_session {
     bough_arena *arena;
     bool open; // the run is there
     bough_run run;
-    uint64_t kind;               // fingerprint of what its copies hold
+    uint64_t kind;               // fingerprint of the content of its copies
     size_t size;                 // of a copy [bytes]
     bough_vertex_motion *vertex; // scratch of the longest beam
     int opening;                 // code of the opening

@@ -205,7 +205,7 @@ typedef struct evaluation {
     const interval *next;                          // of the blades' signals; NULL: they are not set
 } evaluation;
 
-// The wind that each blade meets, then its inductions.
+// The wind at each blade, then its inductions.
 static void approach_blade(void *self, int k) {
     const evaluation *e = self;
     const bough_aero_link *l = e->link;

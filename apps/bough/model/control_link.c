@@ -345,10 +345,10 @@ static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x
             bough_fmu_initialise(l->fmu, x->time, l->simulation->master->duration, &fmu->inputs.values, all));
     }
     BOUGH_TRY(bough_fmu_step(l->fmu, x->time, x->step));
-    all[BOUGH_SENSED_TORQUE] = 0; // if it is no output
+    all[BOUGH_SENSED_TORQUE] = 0; // unless it is an output
     BOUGH_TRY(bough_fmu_get(l->fmu, x->time + x->step, &fmu->outputs.values, all));
     demand->torque = all[BOUGH_SENSED_TORQUE];
-    // a single pitch is for all blades; without one they keep theirs
+    // a single pitch is for all blades; without any, blades keep theirs
     int n = fmu->outputs.n_pitch;
     for (int b = 0; b < x->n_blade; b++)
         demand->pitch[b] = n == 0 ? x->pitch[b] : all[BOUGH_SCENE_SENSED + (n == 1 ? 0 : b)];
@@ -412,7 +412,7 @@ bough_generator bough_control_link_generator(const bough_control_link *l) {
     return (bough_generator){speed, torque, electrical_power(l->control, speed, torque)};
 }
 
-// Without the memory of a foreign controller.
+// The memory of a controller outside the program is not included.
 static void snapshot(void *self, bough_snapshot *s) {
     bough_control_link *link = self;
     bough_snapshot_take(s, &link->now, sizeof link->now);

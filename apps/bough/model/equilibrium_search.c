@@ -13,7 +13,7 @@ static const double still = 1e-8;
 
 static const double folded = 2; // between neighbouring sections, whose rotation has no direction beyond [rad]
 
-// What is found beyond this angle is no equilibrium of a rod.
+// A shape that is bent beyond this angle is no equilibrium of a rod.
 static bough_status explain_rods(const bough_simulation *s, int steps) {
     for (const bough_beam *beam = s->beam; beam < s->beam + s->n_beam; beam++) {
         if (!beam->rod) continue;
@@ -170,7 +170,7 @@ double bough_equilibrium_search_move(void *self, const double *state, const doub
         if (!beam->rod) continue;
         const bough_rod_model *m = beam->mesh;
         size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
-        size_t end = 0; // of a rod that carries nothing: not read
+        size_t end = 0; // not read of a rod that carries nothing
         if (beam->end >= 0) {
             int link = s->tree->ends[beam->end].link;
             end = (size_t)s->tree->links[link].first_coordinate;

@@ -320,7 +320,7 @@ static void sample_wind(void *self, double t, double *value) {
     const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
     double tip = hub_spin(s) * bough_simulation_rotor(s).radius;
-    bool blows = fabs(mean.x) > 1e-12 * fabs(tip); // by more than rounding
+    bool blows = fabs(mean.x) > 1e-12 * fabs(tip); // beyond rounding
     const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, blows ? tip / mean.x : 0};
     memcpy(value, values, sizeof values);
 }

@@ -76,8 +76,7 @@ static neighbour neighbour_of(const bough_section_loads *x, int i, int sign) {
     return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
 }
 
-// C D q of theory (30): the mean of what the moment of a segment is beside a linear one, by the loads along
-// it.
+// C D q of theory (30): the mean deviation of a segment's moment from a linear one, by the loads along it.
 static bough_vec3 bow_of_loads(const bough_section_loads *x, int i) {
     const bough_rod_model *m = x->beam->mesh;
     double stiffness[6][6], moment[3] = {0, 0, 0};
@@ -116,7 +115,7 @@ static bough_section_load load_between(const bough_section_loads *x, int i, doub
         weight = (offset - a.distance) / (b.distance - a.distance);
         bough_vec3 excess = middle_excess(x, i, &a, &b);
         middle.force = bough_add(middle.force, excess);
-        // a neighbour has the same excess, an end none
+        // a neighbour has the same excess, an end has none
         if (!a.inner) a.slope.force = bough_axpy(-1 / a.distance, excess, a.slope.force);
         if (!b.inner) b.slope.force = bough_axpy(-1 / b.distance, excess, b.slope.force);
     } else if (!a.known && !b.known) {

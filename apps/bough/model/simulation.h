@@ -150,7 +150,7 @@ bool bough_simulation_accelerate(const bough_simulation *s, double t);
 // on the bodies that it carries, force in the body's axes and moment in the section's [N, N m]; of a rigid
 // body on its carrier, zero where other bodies, elements or loads act on it. Weight and inertia of the
 // vertices there, which the tree carries, are those of the rod. Reads the accelerations of
-// bough_simulation_accelerate. Theory (99).
+// bough_simulation_accelerate.
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 
@@ -168,7 +168,7 @@ size_t bough_simulation_most_vertices(const bough_simulation *s);
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
                                   bough_vertex_motion *vertex);
 
-// The same in the body's axes, as rows of n_segment + 1 numbers that a blade's motion has: see rotor.h.
+// The same in the body's axes, as rows of n_segment + 1 numbers like those of a blade's motion: see rotor.h.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows);
 
 // -- building (build.c) ---------------------------------------------------------------------------

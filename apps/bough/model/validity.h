@@ -5,10 +5,10 @@
 
 typedef enum bough_limit {
     BOUGH_LIMIT_ATTACK,      // the angle of attack lies where the polar's table has no rows
-    BOUGH_LIMIT_MACH,        // a section meets the air at half the speed of sound
+    BOUGH_LIMIT_MACH,        // the inflow at a section is half the speed of sound
     BOUGH_LIMIT_ROTOR_SPEED, // the rotor turns twice as fast as the control law's rated speed
     BOUGH_LIMIT_TOWER,       // a blade is inside the tower
-    BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
+    BOUGH_LIMIT_SAMPLES,     // the air is sampled too rarely for the vibrations of a modal blade
     BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
     BOUGH_LIMIT_SHAPES,      // a modal body, or a piece of one, bends by more than a tenth of its length
     BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
@@ -54,7 +54,7 @@ bough_status bough_validity_check_closed(bough_simulation *s);
 // Counts macro steps with very many steps of solvers; `steps` of all solvers since the start of the process.
 void bough_validity_check_work(bough_simulation *s, double steps);
 
-// The finer solution beside the run gives up.
+// The finer solution beside the run needs too much work and ends.
 void bough_validity_pass_fast(bough_simulation *s);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.

@@ -1,5 +1,5 @@
-// Names and units of what a run records, in groups: whoever computes values registers one group
-// and its channels, and is asked for all of them at once. Building allocates, sampling does not.
+// Names and units of what a run records, in groups: each source of values registers one group
+// with its channels, which are always evaluated together. Building allocates, sampling does not.
 #pragma once
 
 #include "core/base/arena.h"

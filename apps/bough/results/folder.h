@@ -29,7 +29,7 @@ void bough_folder_clean(const char *folder);
 // Removes folder/name if there is one.
 bough_status bough_folder_remove(const char *folder, const char *name);
 
-// Closes the file. With a good status of what was to be written, path.partial gets its final name; a write
+// Closes the file. If all has been written (`status` is good), path.partial gets its final name; a write
 // error noticed only now is reported, and the partial file is then left as it is. With any other status
 // path.partial is removed, and that status is returned.
 bough_status bough_folder_close(const char *path, FILE *file, bough_status status);

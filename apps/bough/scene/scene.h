@@ -414,7 +414,7 @@ typedef struct bough_scene_event {
     const char *channel;   // whose threshold triggers it; NULL: it happens at that time
     double threshold;      // in the channel's unit
     bool falls;            // the event occurs below it, else above
-    int blade;             // number of the blade with the fault, from 1; 0: of none
+    int blade;             // number of the blade with the fault, from 1; 0: no blade
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
     int body;              // its index
     double angle;          // final pitch or yaw [rad]; of stops 0: 90 degrees ("auto")

@@ -66,8 +66,8 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
 // `root` where there is none. NULL after an error in the block.
 bough_node *bough_scene_expand(bough_schema_reader *reader, bough_node *root);
 
-// Sets what the scene does not name to what follows from simulation.accuracy, by the laws in
-// scene_accuracy.c.
+// Sets the keys that the scene does not name to the values that follow from simulation.accuracy, by the laws
+// in scene_accuracy.c.
 void bough_scene_apply_accuracy(bough_scene *scene);
 
 // Whether time/step is a whole number, at least one; also true after an error in either.
