@@ -7,15 +7,16 @@ typedef struct fixture {
     bough_discon *discon;
 } fixture;
 
-static fixture open_controller(const char *input) {
+static fixture open_controller(const char *input, bool copy) {
     fixture f = {.arena = check_memory()};
-    check_ok(bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, false, &f.discon));
+    check_ok(bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, copy, &f.discon));
     return f;
 }
 
 TEST(demands_come_back) {
-    for (int individual = 0; individual < 2; individual++) {
-        fixture f = open_controller(individual ? "individual" : "");
+    for (int k = 0; k < 4; k++) { // of the library, and of a copy
+        bool individual = k > 1;
+        fixture f = open_controller(individual ? "individual" : "", k % 2 == 1);
         bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3, .generator_speed = 120};
         bough_discon_demand demand;
         check_ok(bough_discon_call(f.discon, &sensed, &demand));
@@ -27,7 +28,7 @@ TEST(demands_come_back) {
 
 TEST(more_blades_than_records_have_one_pitch) {
     for (int individual = 0; individual < 2; individual++) {
-        fixture f = open_controller(individual ? "individual" : "");
+        fixture f = open_controller(individual ? "individual" : "", false);
         bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 5, .generator_speed = 120};
         bough_discon_demand demand;
         bough_status status = bough_discon_call(f.discon, &sensed, &demand);
@@ -69,7 +70,7 @@ TEST(records_are_served) {
     for (size_t i = 0; i < sizeof record / sizeof *record; i++) {
         char input[16];
         snprintf(input, sizeof input, "record %02d", record[i].number);
-        fixture f = open_controller(input);
+        fixture f = open_controller(input, false);
         bough_discon_demand demand;
         check_ok(bough_discon_call(f.discon, &sensed, &demand));
         double wanted = record[i].number == 50 ? (double)strlen(input) : record[i].value;
@@ -81,7 +82,7 @@ TEST(records_are_served) {
 
 // 0 at first, then 1, and −1 at the last call.
 TEST(status_tells_first_and_last) {
-    fixture f = open_controller("count");
+    fixture f = open_controller("count", false);
     for (int k = 0; k < 4; k++) {
         bough_discon_sensed sensed = {.time = k, .step = 1, .last = k == 3, .n_blade = 3};
         bough_discon_demand demand;
@@ -93,7 +94,7 @@ TEST(status_tells_first_and_last) {
 TEST(failures_are_reported) {
     static const char *const answer[][2] = {{"fail", "too late"}, {"nan", "nan"}, {"warn", NULL}};
     for (int i = 0; i < 3; i++) {
-        fixture f = open_controller(answer[i][0]);
+        fixture f = open_controller(answer[i][0], false);
         bough_discon_sensed sensed = {.time = 1, .step = 1, .n_blade = 3, .generator_speed = 1};
         bough_discon_demand demand;
         bough_status status = bough_discon_call(f.discon, &sensed, &demand);
@@ -109,10 +110,13 @@ TEST(failures_are_reported) {
 TEST(what_is_no_controller_is_refused) {
     static const char *const bad[][2] = {{"/nowhere/discon.so", "/nowhere/discon.so"},
                                          {BOUGH_SOURCE_DIR "/README.md", "README.md"},
-                                         {BOUGH_OTHER_LIBRARY, "no function DISCON"}};
-    for (int i = 0; i < 3; i++) {
+                                         {BOUGH_OTHER_LIBRARY, "no function DISCON"},
+                                         {BOUGH_SAMPLE_DISCON, "too long a name"}};
+    for (int i = 0; i < 4; i++) {
+        char input[2000] = "";
+        if (i == 3) memset(input, 'x', sizeof input - 1);
         check_arena(arena);
         bough_discon *discon;
-        check_fails(bough_discon_open(arena, bad[i][0], "", false, &discon), BOUGH_INVALID, bad[i][1]);
+        check_fails(bough_discon_open(arena, bad[i][0], input, false, &discon), BOUGH_INVALID, bad[i][1]);
     }
 }
