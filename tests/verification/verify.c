@@ -2,7 +2,6 @@
 #include "tests/verification/verify.h"
 
 #include "apps/bough/config/schema_keys.h"
-#include "apps/bough/model/simulation.h"
 
 // -- quantities -----------------------------------------------------------------------------------
 

@@ -9,8 +9,6 @@
 #include "flexbody/rod/rod_modes.h"
 #include "tests/unit/rod_energy.h"
 
-#include <assert.h>
-
 // -- scene ----------------------------------------------------------------------------------------
 
 static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k, bough_run *run) {

@@ -7,7 +7,6 @@
 
 #include <locale.h>
 #include <pthread.h>
-#include <unistd.h>
 
 static const char pendulum[] = BOUGH_SOURCE_DIR "/apps/mechanisms/pendulum.yaml";
 

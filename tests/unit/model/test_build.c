@@ -3,7 +3,6 @@
 #include "tests/unit/sample_numbers.h"
 #include "tests/unit/tree_measure.h"
 
-#include "apps/bough/model/aero_link.h"
 #include "flexbody/section/section.h"
 
 static const char runup[] = "apps/turbine/runup.yaml", arms[] = "tests/data/scenes/arms.yaml";

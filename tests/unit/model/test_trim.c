@@ -2,7 +2,6 @@
 // 5 MW turbine (Jonkman et al. 2009, figure 9-1), and no start-up to speak of.
 #include "aero/control/controller.h"
 #include "apps/bough/model/aero_link.h"
-#include "apps/bough/model/control_link.h"
 #include "tests/unit/built_scene.h"
 
 static const double rpm = BOUGH_PI / 30, degree = BOUGH_PI / 180;

@@ -2,7 +2,6 @@
 #include "core/base/linalg.h"
 #include "tests/unit/scene_text.h"
 
-#include <sys/stat.h>
 #include <time.h>
 
 // -- good scenes ----------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 #include "tests/unit/rigid_tree.h"
 #include "tests/unit/tree_measure.h"
 
-#include "core/tree/force.h"
 #include "core/tree/tree_newton.h"
 
 static bough_transform placed(unsigned *seed) {

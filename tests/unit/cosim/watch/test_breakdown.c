@@ -1,5 +1,4 @@
 // A member that breaks down within a macro step: two masses, of which the first cannot be moved far.
-#include "cosim/watch/monitor.h"
 #include "tests/unit/two_mass.h"
 
 static bough_integrator_ops fragile; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)

@@ -2,7 +2,6 @@
 
 #include "cosim/signal.h"
 #include "flexbody/rod/rod_modes.h"
-#include "flexbody/rod/rod_system.h"
 #include "flexbody/section/section.h"
 #include "tests/unit/contract.h"
 #include "tests/unit/sample_rod.h"

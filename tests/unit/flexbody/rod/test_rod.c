@@ -1,7 +1,6 @@
 // The rod's forces and balances; its tangents are under the contract in test_rod_system.c.
 
 #include "core/base/spatial.h"
-#include "flexbody/rod/rod_system.h"
 #include "flexbody/rod/rod_tangent.h"
 #include "tests/unit/rod_energy.h"
 #include "tests/unit/sample_rod.h"
