@@ -415,13 +415,10 @@ static bool constrain(void *self, double t, double *state) {
     return far;
 }
 
-static void project(void *self, const double *state, double *x) { bough_whole_project(self, state, x); }
-
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
     .linearise_ahead = linearise_ahead,
     .constrain = constrain,
-    .project = project,
 };
 
 bough_system bough_whole_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,

@@ -60,16 +60,10 @@ static double largest(const path *p, const double *x) {
 
 // Moves a place by a change of state and load factor; false: by too large a rotation.
 static bool add(path *p, place *at, const double *change, double factor) {
-    double turn = 0;
-    if (p->def->move) {
-        turn = p->def->move(p->def->self, at->state, change, p->moved);
-    } else {
-        for (int k = 0; k < p->n; k++) p->moved[k] = at->state[k] + change[k];
-    }
-    if (!(turn < most_turn)) return false;
+    if (!(p->def->move(p->def->self, at->state, change, p->moved) < most_turn)) return false;
     memcpy(at->state, p->moved, (size_t)p->n * sizeof *p->moved);
     at->factor += factor;
-    if (p->def->rest) p->def->rest(p->def->self, at->state);
+    p->def->rest(p->def->self, at->state);
     return true;
 }
 

@@ -16,7 +16,7 @@ typedef struct bough_path_def {
     double tolerance; // of the last correction, in units of the members' scales
     int steps;        // most, refused ones among them
     void *self;
-    // As in equilibrium.h.
+    // As in equilibrium.h, not NULL.
     double (*move)(void *self, const double *state, const double *change, double *moved);
     void (*rest)(void *self, double *state);
     // A point of the path; `limit`: there the load factor has an extremum. A failure
