@@ -7,7 +7,7 @@ static bough_status verify(bough_arena *arena, const void *given) {
     bough_errors errors = {.arena = arena};
     bough_verification verification;
     bough_status status = bough_verification_read(arena, options->operand, &errors, &verification);
-    bough_errors_tell(&errors, &status);
+    bough_errors_report(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_verification_options how = {.folder = bough_out_folder(arena, options),
                                       .threads = options->threads,

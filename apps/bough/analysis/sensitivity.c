@@ -206,8 +206,8 @@ static void start(int n, int seed, double complex *vector) {
     for (int i = 0; i < n; i++) vector[i] = 1.1 + sin(seed + 7 * i) + imaginary * cos(seed + 5 * i);
 }
 
-// Whether another vector has the same eigenvalue.
-static bool has_twin(int n, const double complex *a, const double complex *b) {
+// Whether two vectors found for one eigenvalue differ: several modes then have it.
+static bool differ(int n, const double complex *a, const double complex *b) {
     double complex sum = 0;
     for (int i = 0; i < n; i++) sum += conj(a[i]) * b[i];
     return cabs(sum) < 0.99;
@@ -229,14 +229,14 @@ static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {
     double *matrix = bough_arena_doubles(arena, all * all);
     x->right = take_complex(arena, 2 * all);
     x->left = take_complex(arena, all);
-    double complex *twin = x->right + all;
+    double complex *second = x->right + all;
     BOUGH_TRY(fill(arena, system, matrix));
     start(x->all, 1, x->right);
-    start(x->all, 3, twin);
+    start(x->all, 3, second);
     start(x->all, 2, x->left);
     bool found = iterate(arena, x->all, matrix, false, x->value, 2, x->right) &&
                  iterate(arena, x->all, matrix, true, x->value, 1, x->left);
-    if (found && has_twin(x->all, x->right, twin))
+    if (found && differ(x->all, x->right, second))
         return bough_fail(BOUGH_INVALID, "the sensitivity of one of several modes with one eigenvalue is not "
                                          "defined: their shapes mix");
     if (!found || !(improve(arena, matrix, x) < exact))

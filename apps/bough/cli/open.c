@@ -72,7 +72,7 @@ bough_status bough_open_scene(bough_arena *arena, const bough_options *options, 
     bough_errors errors = {.arena = arena};
     bough_status status =
         bough_scene_read(arena, NULL, options->operand, options->set.text, options->set.n, &errors, scene);
-    bough_errors_tell(&errors, &status);
+    bough_errors_report(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_scene_warn(*scene, stderr);
     if (options->threads > 0) (*scene)->simulation.threads = options->threads;

@@ -36,7 +36,7 @@ static bough_status perform(bough_arena *arena, const void *given) {
     bough_errors errors = {.arena = arena};
     bough_study *study;
     bough_status status = bough_study_read(arena, options->operand, options->threads, &errors, &study);
-    bough_errors_tell(&errors, &status);
+    bough_errors_report(&errors, &status);
     if (!bough_is_ok(&status)) return status;
     bough_study_options how = own->how;
     how.folder = bough_out_folder(arena, options);

@@ -137,7 +137,7 @@ void bough_errors_print(const bough_errors *errors, FILE *stream) {
     if (errors->dropped > 0) fprintf(stream, "%d more errors\n", errors->dropped);
 }
 
-void bough_errors_tell(const bough_errors *errors, bough_status *status) {
+void bough_errors_report(const bough_errors *errors, bough_status *status) {
     if (errors->n == 0 || status->code != BOUGH_INVALID) return;
     bough_errors_print(errors, stderr);
     status->message[0] = '\0';

@@ -57,7 +57,7 @@ bough_status bough_errors_status(bough_errors *errors, const char *file, const c
 void bough_errors_print(const bough_errors *errors, FILE *stream);
 
 // Prints them on stderr in place of the status's message, which becomes empty.
-void bough_errors_tell(const bough_errors *errors, bough_status *status);
+void bough_errors_report(const bough_errors *errors, bough_status *status);
 
 // The tree of a file; NULL after adding to `errors` why not.
 bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *errors);

@@ -14,7 +14,8 @@
 
 // -- messages -------------------------------------------------------------------------------------
 
-static void hear(fmi3_environment environment, fmi3_status status, fmi3_string category, fmi3_string text) {
+static void receive(fmi3_environment environment, fmi3_status status, fmi3_string category,
+                    fmi3_string text) {
     bough_fmu_instance *x = environment;
     (void)category;
     if (status >= FMI3_DISCARD && text) snprintf(x->message, sizeof x->message, "%s", text);
@@ -91,7 +92,7 @@ static bough_status instantiate(bough_fmu_instance *x) {
     }
     snprintf(resources, sizeof resources, "%s%s%s/resources/", here, absolute ? "" : "/", fmu->unpacked);
     x->instance = x->instantiate(x->name, fmu->description.token, resources, false, true, false, false, NULL,
-                                 0, x, hear, NULL);
+                                 0, x, receive, NULL);
     if (!x->instance) return check_call(x, "fmi3InstantiateCoSimulation", 0, FMI3_ERROR);
     size_t n = (size_t)fmu->parameters.n;
     fmi3_status set = n > 0 ? x->set(x->instance, fmu->reference, n, fmu->parameters.value, n) : FMI3_OK;
