@@ -116,10 +116,12 @@ static void keep_channels(bough_arena *arena, bough_study *s, const bough_channe
     s->n_channel = all ? channels->count : s->n_wanted;
     s->channel = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->channel);
     s->unit = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->unit);
+    s->load = bough_arena_take(arena, (size_t)s->n_channel * sizeof *s->load);
     for (int i = 0; i < s->n_channel; i++) {
         int k = all ? i : bough_channels_find(channels, s->wanted[i]);
         s->channel[i] = bough_arena_string(arena, channels->channel[k].name);
         s->unit[i] = bough_arena_string(arena, channels->channel[k].unit);
+        s->load[i] = channels->channel[k].load;
     }
 }
 

@@ -20,23 +20,13 @@ bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_study *study)
     return l;
 }
 
-// Forces and moments, also per length: their units begin with a newton.
-static bool is_load(const char *unit) {
-    const char *base = unit + strspn(unit, "kM");
-    return base[0] == 'N' && (base[1] == '\0' || base[1] == '-' || base[1] == '/');
-}
-
 // sign: 1 of a maximum, −1 of a minimum.
-static double factor_of(const bough_load_group *g, const char *unit, double value, int sign) {
-    if (!is_load(unit)) return 1;
-    return sign * value < 0 ? g->favourable : g->factor;
-}
-
 static void add_extreme(bough_extreme *e, const bough_study *study, int number, int channel,
                         const bough_channel_counts *c, int sign) {
     const bough_sample_statistics *s = &c->statistics;
     double value = sign > 0 ? s->most : s->least;
-    double factor = factor_of(&study->group[study->cases[number].group], study->unit[channel], value, sign);
+    const bough_load_group *g = &study->group[study->cases[number].group];
+    double factor = !study->load[channel] ? 1 : sign * value < 0 ? g->favourable : g->factor;
     if (e->found && !(sign * factor * value > sign * e->factor * e->value)) return;
     e->found = true;
     e->value = value;

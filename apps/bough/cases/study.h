@@ -154,6 +154,7 @@ typedef struct bough_study {
     int n_channel;
     const char **channel;       // (n_channel) of all measures in their order, or those of the statistics
     const char **unit;          // (n_channel) of those of the statistics
+    bool *load;                 // (n_channel) whether they are forces or moments, also per length
     bough_schema_shared *files; // of the scenes, each read once
 } bough_study;
 

@@ -39,19 +39,21 @@ static const struct {
     const char *unit;
     bough_quantity_kind kind;
     double si, turn;
+    bool load;
 } units[] = {
-    {"m", BOUGH_KIND_LENGTH, 1, 0},
-    {"deg", BOUGH_KIND_ANGLE, BOUGH_DEGREE, 360},
-    {"rad", BOUGH_KIND_ANGLE, 1, 2 * BOUGH_PI},
-    {"-", BOUGH_KIND_ANGLE, 1, 0},
-    {"m/s", BOUGH_KIND_VELOCITY, 1, 0},
-    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_DEGREE, 0},
-    {"rad/s", BOUGH_KIND_ANGULAR_VELOCITY, 1, 0},
-    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_RPM, 0},
-    {"N", BOUGH_KIND_FORCE, 1, 0},
-    {"kN", BOUGH_KIND_FORCE, 1e3, 0},
-    {"N-m", BOUGH_KIND_MOMENT, 1, 0},
-    {"kN-m", BOUGH_KIND_MOMENT, 1e3, 0},
+    {"m", BOUGH_KIND_LENGTH, 1, 0, false},
+    {"deg", BOUGH_KIND_ANGLE, BOUGH_DEGREE, 360, false},
+    {"rad", BOUGH_KIND_ANGLE, 1, 2 * BOUGH_PI, false},
+    {"-", BOUGH_KIND_ANGLE, 1, 0, false},
+    {"m/s", BOUGH_KIND_VELOCITY, 1, 0, false},
+    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_DEGREE, 0, false},
+    {"rad/s", BOUGH_KIND_ANGULAR_VELOCITY, 1, 0, false},
+    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, BOUGH_RPM, 0, false},
+    {"N", BOUGH_KIND_FORCE, 1, 0, true},
+    {"kN", BOUGH_KIND_FORCE, 1e3, 0, true},
+    {"N-m", BOUGH_KIND_MOMENT, 1, 0, true},
+    {"kN-m", BOUGH_KIND_MOMENT, 1e3, 0, true},
+    {"N/m", BOUGH_KIND_OTHER, 1, 0, true},
 };
 
 static void set_unit(bough_channel *channel, const char *unit) {
@@ -63,6 +65,7 @@ static void set_unit(bough_channel *channel, const char *unit) {
         channel->kind = units[k].kind;
         channel->si = units[k].si;
         channel->turn = units[k].turn;
+        channel->load = units[k].load;
     }
 }
 

@@ -28,6 +28,7 @@ typedef struct bough_channel {
     const char *meaning; // one line; NULL: none
     double si;           // what one unit is in SI units
     double turn;         // of an angle: a whole turn in its unit; else 0
+    bool load;           // a force or moment, also per length
     int vector;          // the first channel of the vector that it is a component of; its own index: a scalar
     bough_sampling sampled; // by what; where the values are known at samples only
 } bough_channel;

@@ -24,6 +24,7 @@ enum { CASES = 13 };
 static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
     static double slope[] = {4, 10};
     static const char *channel[] = {"load", "other"}, *unit[] = {"kN-m", "rpm"};
+    static bool load[] = {true, false};
     bough_study set = {.n_slope = 2,
                        .slope = slope,
                        .cycles = 1e6,
@@ -35,7 +36,8 @@ static bough_study made(bough_case cases[CASES], bough_load_group group[4]) {
                        .cases = cases,
                        .n_channel = 2,
                        .channel = channel,
-                       .unit = unit};
+                       .unit = unit,
+                       .load = load};
     group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
     group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
     cases[0] = (bough_case){.group = 0, .fraction = 0.5};

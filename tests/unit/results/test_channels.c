@@ -33,6 +33,16 @@ TEST(groups_fill_their_own_channels) {
     check_near(value[3], 7, 0, 0);
 }
 
+// Also per length.
+TEST(forces_and_moments_are_loads) {
+    static const char *const unit[] = {"kN-m", "N", "N/m", "rpm", "-", "kW"};
+    check_arena(arena);
+    bough_channels list = bough_channels_start(arena);
+    bough_channels_group(&list, sample_times, NULL);
+    for (int i = 0; i < 6; i++) bough_channels_add(&list, unit[i], "c%d", i);
+    for (int i = 0; i < 6; i++) assert_int_equal(list.channel[i].load, i < 3);
+}
+
 TEST(known_values_are_those_of_copies_and_choices) {
     check_arena(arena);
     static const char *const pattern[] = {"RotSpeed"};
