@@ -76,8 +76,8 @@ bool bough_interface_factor(bough_interface *k, int member, const bough_operatin
 // The follower's columns and responses, once its leaders have been factored.
 void bough_interface_respond(bough_interface *k, int member, const bough_operating_point *at);
 
-// Change of a member's outputs with its state and its inputs, where it was last linearised, which is at
-// `at` or near; either change may be NULL.
+// Change of a member's outputs with its state and its inputs, by its last linearisation, at `at` or near it;
+// either change may be NULL.
 void bough_interface_output_change(const bough_interface *k, int member, const bough_operating_point *at,
                                    const double *state_change, const double *input_change, double *change);
 
@@ -92,12 +92,12 @@ bool bough_interface_close(bough_interface *k);
 // holds the changes of all inputs without what the coordinates add to them.
 void bough_interface_solve(bough_interface *k, double *change);
 
-// Adds to x (n_state of the member) its response to the coordinates. A follower whose directions are its own
-// inputs responds to the change of these (n_input of the member) that the leaders cause.
+// Adds to x (n_state of the member) its response to the coordinates. A follower with its own inputs as
+// directions responds to their change by the leaders, `change` (n_input of the member).
 void bough_interface_add_response(const bough_interface *k, int member, const double *change, double *x);
 
-// Of a follower: adds to output_change its response to a change of its inputs, where these are its
-// directions. One that follows a leader's states adds nothing.
+// Of a follower with its own inputs as directions: adds its response to their change to output_change. One
+// that follows a leader's states adds nothing.
 void bough_interface_add_output_response(const bough_interface *k, int member, const double *change,
                                          double *output_change);
 

@@ -93,9 +93,9 @@ bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
 enum { BLOCK = 4, FIRST = 64 }; // macro steps
 
-// If all of the first steps were halved, they would be those of the run that this one is compared with,
-// theory (71), wherever that takes one step in each of its macro steps. Halved ones follow each other,
-// because every change of the step takes new factors.
+// If all of the first macro steps were halved, their steps would be those of the compared run, theory (71),
+// wherever this takes one step in each macro step. Halved macro steps follow each other, because every change
+// of the step takes new factors.
 static bool taken_in_halves(const bough_master *m) {
     if (!m->halves || m->split || m->halve) return m->halves;
     if (m->grid_index >= FIRST) return m->at_event || m->grid_index % (8 * BLOCK) < BLOCK;

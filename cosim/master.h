@@ -31,9 +31,9 @@ typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step; // H, the longest [s]
-    // Some macro steps are taken in halves, for a system that is integrated as one: four of every eight
-    // of the first 64 (all of them where its integrator takes several steps in each), four of every 32 later,
-    // those after events, and by `halve`.
+    // Some macro steps are taken in halves, for a system that is integrated as one: of the first 64 four of
+    // every eight, or all where its integrator takes several steps in each; later four of every 32; those
+    // after events; and those for which `halve` is set.
     bool halves;
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;                // [s]; the run starts at time 0

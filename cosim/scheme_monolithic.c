@@ -39,8 +39,8 @@ static void find_right_side(const stages *s, int i) {
     bough_rosenbrock_right_side(s->step, s->stage, offset[0], offset[1]);
 }
 
-// Tasks of a stage before those of the leaders: an empty one follows those of an odd number of followers, so
-// that of two threads the caller, which is done with its followers first, has the first leader.
+// Number of a stage's tasks before those of the leaders. After an odd number of followers an empty task makes
+// the first leader one of the caller's: of two threads it finishes its followers first.
 static int tasks_of_followers(const stages *s) {
     return 2 * s->assembly->n_follower + s->assembly->n_follower % 2;
 }

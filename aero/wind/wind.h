@@ -68,8 +68,8 @@ bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bou
 // Whether a wind of a box is known all over a disk of that radius across it [m].
 bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius);
 
-// What samples at equal times do not show of a table or a hub-height file, which may rise and fall between
-// two of them. Zero for other winds.
+// The part of a table or a hub-height file that samples at equal times miss, because the wind may rise and
+// fall between two of them. Zero for other winds.
 typedef struct bough_wind_missed {
     double speed; // the furthest that a component of the wind goes beyond both samples around it [m/s]
     double time;  // of that [s]

@@ -113,8 +113,7 @@ static double *amplitude_of(const maker *m, int component) {
     return m->amplitude + (size_t)component * ((size_t)m->n_wave + 1);
 }
 
-// theory (98): the variance of a wave is that of the band about it, and of the frequencies beyond the
-// aliases.
+// theory (98): a wave has the variance of the band about it, and a part of that beyond the aliases.
 static void set_amplitudes(maker *m, int component) {
     double deviation = deviation_of(m->def, component), scale = time_scale(m->def, component);
     double rest = (1 - fraction_below((2 * ALIASES + 1) * (m->n_wave + 1) * m->step, scale)) / m->n_wave;

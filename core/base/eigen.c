@@ -11,7 +11,7 @@ enum {
 
 static const double accuracy = 1e-9;
 
-// Eigenvalues of the inverse below this share of the largest are rounding, of vectors that it maps to zero.
+// Eigenvalues of the inverse below this part of the largest are rounding: it maps their vectors to zero.
 static const double rounding = 1e-10;
 
 // What is sought, and the basis in which.

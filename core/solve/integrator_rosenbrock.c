@@ -20,14 +20,14 @@ static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 
 // length, −2e-4 for three times as much, which tangents of every step have too.
 static const double least_viscosity = 0.03; // [-]
 static const double most_change = 0.002;    // [-]
-// A step fails because its tangents are old where its error exceeds this multiple of the last one under new
-// tangents, both over the third power of the length: tangents of a member that rotates fast last a few steps.
+// The age of its tangents is the cause of a failed step whose error exceeds this multiple of the last one
+// with new tangents, both over the third power of the length: a member that rotates fast soon needs new ones.
 static const double too_old = 3;
-// They are renewed after a step that succeeds, too, where its error exceeds this multiple of the least under
-// these tangents and this part of the tolerance: a stiff body that rotates moves what carries it.
+// Tangents are renewed also after a successful step whose error exceeds this multiple of the least error with
+// them, and this part of the tolerance: with old ones a stiff body that rotates moves its carrier.
 static const double turned = 10, noticed = 0.03;
-// Not the tangents but the motion is the cause where the first step under new ones has more than this part of
-// the error for which they were renewed, both over the third power of the length.
+// If the first step with new tangents has more than this part of the error for which they were renewed, both
+// over the third power of the length, the motion is the cause and not the tangents.
 static const double by_motion = 0.5;
 static const double older = 1.1;     // growth of the useful age at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative

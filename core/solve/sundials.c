@@ -411,7 +411,7 @@ static bool take_arkode_memory(run *r) {
 static int arkode_end(run *r) {
     int bad =
         ARKStepSetLinSysFn(r->memory, arkode_tangents) | ARKStepSetMaxErrTestFails(r->memory, most_failures);
-    // the rate of a stage is what gave its value, not f of it, which would amplify a stiff error
+    // the rate of a stage follows from its value; f at that value would amplify a stiff error
     bad |= ARKStepSetDeduceImplicitRhs(r->memory, SUNTRUE);
     // with the default of 0.1 a stage at a loose tolerance ends after one iteration: an error that the
     // estimate of a step does not see

@@ -56,8 +56,8 @@ double bough_joint_spring_force(const bough_joint_spring *spring, double q, doub
 // −∂force/∂q
 double bough_joint_spring_stiffness(const bough_joint_spring *spring, double q);
 
-// The kind's name in scenes ("revolute"), its numbers of coordinates and of speeds, and of the
-// axes that define it: the axis, the second axis.
+// The kind's name in scenes ("revolute"), and its numbers of coordinates, of speeds, and of axes that define
+// it (axis, second axis).
 const char *bough_joint_name(bough_joint_kind kind);
 int bough_joint_n_coordinates(bough_joint_kind kind);
 int bough_joint_n_speeds(bough_joint_kind kind);

@@ -6,7 +6,7 @@
 // On g = 0, G v = 0 it is the motion of the closed mechanism exactly; off it both decay with the
 // time constant T, so that every integrator and coupling scheme keeps them at its own tolerance.
 // Equations that depend on each other are the normal case (a plane four-bar in space): λ and μ are
-// the least of all that solve them, each measured by what it moves, so that units do not matter.
+// the smallest solutions, each component measured by the motion it causes, so that units do not matter.
 // Reference: U. Ascher, H. Chin, L. Petzold, S. Reich, Stabilization of constrained mechanical
 // systems with DAEs and invariant manifolds, Mech. Struct. Mach. 23 (1995).
 #pragma once

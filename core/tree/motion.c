@@ -80,8 +80,8 @@ static void spline_slopes(const bough_motion_def *def, double *slope, double *ga
 }
 
 // The largest slope at an end of interval i, where the spline has `slope`, without an overshoot: three times
-// the chord's. At the top of a smooth curve, where a parabola through its neighbours would have half of their
-// step per interval, a little more than that stays.
+// the chord's. Near the top of a smooth curve a parabola through the neighbouring points has half of their
+// step per interval as its slope; a little more than that is allowed.
 static double largest_slope(const bough_motion_def *def, int i, double slope) {
     double most = 3 * fabs(chord_slope(def, i));
     if (i == 0 || i == def->n - 2) return most;

@@ -353,7 +353,7 @@ static void sweep(const bough_tree_newton *w, const double *coupling, const doub
 
 // -- springs and bushings ----------------------------------------------------------------------
 
-// The changes c of the wrenches at their ends are J ζ, and ζ those of the tree without them under c:
+// The wrenches at their ends change by c = J ζ, with ζ of the tree without springs and bushings under c:
 // (E − J T⁻¹ Eᵀ) c = J T⁻¹ r.
 
 // Lists the ends of springs and bushings, which sets n_ends and n_rows.

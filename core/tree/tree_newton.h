@@ -4,9 +4,9 @@
 //     ζ_i = 𝒳_i ζ_λ + Σ_i x + ζ⁰_i ,   x = δv of its joint,
 //     δf_i = 𝒜_i ζ_i + p_i ,   Sᵀ δf_i − δτ = r ,
 // elimination of x from the leaves to the root gives 𝒜 (6 × 18) and p of each parent. Gravity is
-// an acceleration of the ground, so that it needs no terms of its own. Springs and bushings, which
-// join links that are no neighbours, come in by a system of six unknowns for each of their ends
-// (Woodbury); a tree without them has none.
+// an acceleration of the ground, so that it needs no terms of its own. Springs and bushings
+// connect links that are not neighbours. They add a system of six unknowns for each of their ends
+// (Woodbury).
 #pragma once
 
 #include "core/tree/tree.h"

@@ -362,8 +362,8 @@ bool AT(derivative)(const bough_rod_model *m, const bough_rod_loads *loads, doub
     return balance_vertices(m, state, input, scratch, rate);
 }
 
-// Adds to the forces of the segments what the change Δ of D q does to them where they are:
-// f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own rotation, φ, is neglected.
+// Adds the forces by the change Δ of D q in the present shape to those of the segments: f = −R C Δ, moments
+// ∓h/2 f×V + C Δ, without the segments' own rotation φ.
 static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
                       bough_rod_scratch *scratch) {
     int s = m->stride;

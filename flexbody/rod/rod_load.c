@@ -61,7 +61,7 @@ static void lump_stress(const bough_rod_model *m, int n, strain line, bool follo
     }
 }
 
-// The strain of a part of segment n beyond that of load->line of it, which is what varying sections add.
+// The strain by a part of a load on segment n beyond that by its line load: what varying sections add.
 static void add_variation(const bough_rod_model *m, int n, bough_rod_part part, bough_rod_ramped_load *load) {
     bough_mat3 middle = undeformed(m, n).r;
     segment_load own = {{0}, {0}, {0}};

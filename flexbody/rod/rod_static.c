@@ -49,8 +49,8 @@ double bough_rod_turn(const bough_rod_model *m, const double *change) {
     return turn;
 }
 
-// The chord that gives a segment of the shape `after` the strain of the one before and its change
-// along the step to first order.
+// The chord with which a segment of the shape `after` has the strain before the step plus its change by the
+// step to first order.
 static bough_vec3 stretched(const segment_geometry *before, const segment_geometry *after, double h,
                             vertex_variation dl, vertex_variation dr) {
     segment_variation change = shape_variation(*before, dl, dr, 1 / h);

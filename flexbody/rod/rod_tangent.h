@@ -79,7 +79,7 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 // gyroscopic terms, spin softening and centrifugal stiffening are exact. No quaternion norms, hence
 // no spurious zero eigenvalues.
 
-// Sets the state's velocities to those of a rod that is at rest in its BRF of the twist in `input`.
+// Sets the state's velocities to those of a rod at rest in its BRF, which moves with the twist in `input`.
 void bough_rod_move_rigidly(const bough_rod_model *m, const double *input, double *state);
 
 // K from the blocks of the linearisation at a state that rides with the BRF; input as there.

@@ -25,13 +25,13 @@ typedef struct bough_mode_vectors {
 
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
 //   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, in the arena
-//   count     how many there are; with memory of the air `converged` is that of the subspace's basis, which
-//             has half as many again
+//   count     how many there are; with memory of the air `converged` counts the vectors of the subspace,
+//             which are half as many again
 //   vectors   (count->wanted) of each pair; NULL: not wanted
 //   unpaired  eigenvectors that are not in the subspace, since their left or right partner did not converge
-// The cost is that of factoring a dense matrix of n_state rows (of equal blades a tenth of it), and with
-// memory of the air that of all eigenvalues of one of its states and of three for each mode. BOUGH_FAILED
-// where the eigenvalues do not converge or the system is singular about the point.
+// The cost is that of factoring a dense matrix of n_state rows (a tenth of it for equal blades). With memory
+// of the air all eigenvalues of a matrix of its states and three rows for each mode come to it. BOUGH_FAILED
+// where eigenvalues do not converge or the system is singular about the point.
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *system,
                                      bough_eigen_pair *pair, bough_eigen_count *count,
                                      bough_mode_vectors *vectors, int *unpaired);

@@ -1,6 +1,6 @@
-// (I − γ(J − S + A))⁻¹ about the point of a search for modes in the air, theory (77, 109): what the air
-// couples is a dense matrix, in blocks where a rotor's blades are equal (blade_inverse.c), for a tenth of the
-// operations.
+// (I − γ(J − S + A))⁻¹ about the point of a search for modes in the air, theory (77, 109). The air
+// makes it a dense matrix; where a rotor's blades are equal, this has blocks (blade_inverse.c), which take a
+// tenth of the operations.
 #pragma once
 
 #include "apps/bough/analysis/aeroelastic.h"

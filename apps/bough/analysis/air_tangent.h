@@ -81,8 +81,8 @@ bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimut
 // Adds the slopes (n + n_air) by a state, `at` among those of the members and then of the air.
 void bough_air_mean_add(const bough_air_mean *mean, int at, const double *slope, bough_air_tangent *tangent);
 
-// Adds the slopes of a blade's rates, its own and then its air's, by one of its states each, `column`; sums
-// over the blades, of which the mean enters.
+// Adds slopes that are sums over the blades, as means: of each row of a blade, its states and then its air's,
+// by the state `column` of the row.
 void bough_air_mean_add_own(const bough_air_mean *mean, const int *column, const double *slope,
                             bough_air_tangent *tangent);
 

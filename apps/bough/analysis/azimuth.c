@@ -14,7 +14,7 @@ enum { AZIMUTHS = 4, MOST_BLADES = 16 };
 
 // -- blades seen by an observer at rest -----------------------------------------------------------
 
-// Rows of equal blades, of their states or also of those of their air: row (n_part × n).
+// Rows of the states of equal blades, with or without those of their air: row (n_part × n).
 typedef struct blade_rows {
     int n_part, n;
     const int *row;

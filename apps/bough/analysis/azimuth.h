@@ -1,7 +1,7 @@
 // The mean of a turning rotor of n equal blades over its azimuths, theory (113). Where tilt, shear, weight
 // and tower make the loads of a blade change with its azimuth, the linear system, seen by an observer at
-// rest, repeats after an nth of a revolution. Modes are those of its mean over some azimuths of that part,
-// each linearised about its own equilibrium.
+// rest, repeats after an nth of a revolution. The modes are those of the mean of its linearisations at some
+// azimuths within that part, each about its own equilibrium.
 #pragma once
 
 #include "apps/bough/analysis/aeroelastic.h"

@@ -206,8 +206,8 @@ static double complex block_sum(const double *a, int q, int rows, double sign, i
     return sum;
 }
 
-// Part of eigenvector j in mode k: the product of its right vector with the left one of the mode, and of its
-// left vector with the right one. The sum over all j is 1.
+// Part of eigenvector j in mode k: right vector of j times left vector of k, times left vector of j times
+// right vector of k. The sum over all j is 1.
 static double part_in(const work *w, const reduced *x, int j, int k) {
     int c = w->first[k], parts = w->first[k + 1] - c, q = x->q, own = x->value[q + j] > 0 ? 2 : 1;
     double complex length = block_sum(x->length + c * q + c, q, parts, 1, parts);
@@ -216,7 +216,7 @@ static double part_in(const work *w, const reduced *x, int j, int k) {
     return cabs(right * left / length) / own;
 }
 
-// Of each mode the eigenvalue of the vector that has most of its part in it.
+// For each mode the eigenvalue whose vector has most of the mode.
 static void choose(const work *w, const reduced *x, double complex *there) {
     for (int k = 0; k < w->known->n; k++) {
         there[k] = (double)NAN;

@@ -199,8 +199,8 @@ static void set_rows(const mode_shape *x, bough_shape_row *row) {
 
 // -- energy ---------------------------------------------------------------------------------------
 
-// The body of the scene that moves with a link: the one on its joint, or for the end of a rod the first that
-// is fixed to it, or else the rod.
+// The body of the scene that moves with a link: the one on its joint; for the end of a rod the first body
+// fixed to it, or else the rod.
 static int body_on(const bough_simulation *s, int link) {
     int n = s->scene->n_body, body = s->tree->links[link].body;
     for (int i = 0; i < n && body >= n; i++) {

@@ -1,4 +1,4 @@
-// The parameters of a scene that modes are sensitive to, and scenes in which one of them differs.
+// The parameters of a scene for sensitivities of modes, and scenes in which one of them is changed.
 #include "apps/bough/analysis/sensitivity.h"
 
 #include "apps/bough/analysis/air_tangent.h"

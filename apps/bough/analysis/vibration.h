@@ -3,8 +3,8 @@
 //
 // Where the turbine's rotor turns, its blades are equal and evenly spaced and at least three, the
 // frequencies are those an observer at rest sees: the multi-blade transform of cosim/analysis/modes.h, about
-// the mean of the blades' shapes. In any other rotation they are those of the present azimuth, which is
-// refused where the linear system changes with it: its motions are then no modes.
+// the mean of the blades' shapes. In any other rotation they are those of the present azimuth; where the
+// linear system changes with the azimuth, its motions are no modes, and the search is refused.
 #pragma once
 
 #include "apps/bough/model/blade_group.h"

@@ -128,8 +128,7 @@ static const char *name_in_text(const bough_scene *scene, int body) {
     return name && name->text ? name->text : scene->body[body].name;
 }
 
-// Whether the body is the first that its place in the text describes, and its number of segments is a new
-// one.
+// Whether the body is the first of its place in the text, with another number of segments than the scene's.
 static bool has_new_mesh(const bough_tune_state *t, int body) {
     const bough_scene *s = t->scene;
     for (int i = 0; i < body; i++) {

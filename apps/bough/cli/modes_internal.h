@@ -17,8 +17,8 @@ typedef struct bough_modes_dependence {
     bough_sensitivities of;
 } bough_modes_dependence;
 
-// Prints it and writes sensitivity.csv: `wanted` is the mode's number, or words of its row, then perhaps a
-// number among those that have them.
+// Prints it and writes sensitivity.csv. `wanted` is the mode's number, or words of its row, with a number
+// behind them if several rows have these words.
 bough_status bough_modes_sensitivity(bough_arena *arena, bough_simulation *s, const bough_vibration *v,
                                      const char *wanted, const char *folder, bough_modes_dependence *found);
 

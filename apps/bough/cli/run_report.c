@@ -27,8 +27,8 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
 
 // -- memory ---------------------------------------------------------------------------------------
 
-// getrusage alone is wrong: on Linux its value survives exec, so that it contains the memory of a large
-// program that starts this one.
+// getrusage alone is wrong: on Linux exec keeps its value, which may be that of a large program that started
+// this one.
 static long long peak_memory(void) {
     long long kilobytes = 0;
     char line[128];

@@ -306,8 +306,8 @@ static relevance applies(const bough_schema *schema, const bough_key *key, void 
     return bough_word_is_among(bough_key_choice(by, choice), key->when, '|') ? APPLIES : APPLIES_NOT;
 }
 
-// Refuses a key that does not apply here, with the choices under which it does, unless another key of that
-// name applies.
+// Refuses a key that does not apply here, unless another key of that name does. The error lists the choices
+// under which it applies.
 static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
                        const bough_node *at, void *item) {
     char where[120] = "";

@@ -121,8 +121,8 @@ struct bough_schema_reader {
 void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
                        void *item);
 
-// Adds an error with the path of the value being read, then `.key` unless key is "", "output.frames". Its
-// position is that of the key's value below `node` or, where that is missing, of the nearest one above.
+// Adds an error with the path of the value being read, then `.key` unless key is "", "output.frames". It
+// is placed at the key's value below `node`; without one, at the nearest value above.
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 

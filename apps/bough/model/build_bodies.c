@@ -87,7 +87,7 @@ static bool equal_structures(const bough_scene_structure *x, const bough_scene_s
     return equal;
 }
 
-// One of the first n beams of a simulation whose mesh is that of the beam; NULL: there is none.
+// One of the first n beams of a simulation with the same mesh as this beam; NULL: there is none.
 static const bough_beam *equal_in(const bough_simulation *s, int n, const bough_beam *beam) {
     const bough_scene_rod *rod = &beam->body->rod;
     for (const bough_beam *other = s->beam; other < s->beam + n; other++) {

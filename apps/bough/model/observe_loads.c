@@ -37,7 +37,7 @@ static bough_vec3 vertex_slope(const sensor *x, int i) {
     return bough_sub(now.c3, bough_rotation_matrix(x->loads.beam->def.rotation[i]).c3);
 }
 
-// Change of the curvature over the segment of a place whose sections have these axes, by its moments.
+// Change of curvature over the segment of a place, by its moments; `axes` are those of its sections.
 static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *axes) {
     double m[3], k[3] = {0, 0, 0}, compliance[21];
     bough_vec3 moment[2];

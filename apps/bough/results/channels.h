@@ -77,13 +77,13 @@ int bough_channels_find(const bough_channels *list, const char *name);
 // The names (count), in the arena.
 const char *const *bough_channels_names(const bough_channels *list, bough_arena *arena);
 
-// A list of those channels of `all`, which outlives it, whose names match one of n shell patterns ("Root*"),
-// in their order there; all of them for n = 0. The first pattern that no name matches; −1: each has one.
+// Lists the channels of `all` whose names match one of n shell patterns ("Root*"), in their order; n = 0:
+// all. `all` must outlive the list. Returns the first pattern that no name matches; −1: each matches one.
 int bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
                           bough_channels *chosen);
 
-// Until the next call these are the values (count) of the list, of its copies and of what is chosen from it,
-// so that they are not evaluated twice; NULL: none are known.
+// Sets the known values (count) of the list, its copies and the lists chosen from it, until the next call:
+// they are then not evaluated a second time. NULL: no values are known.
 void bough_channels_know(const bough_channels *list, const double *value);
 
 // Evaluates every group unless the values are known: value (count).

@@ -1,5 +1,5 @@
-// frames.pvd and the frames it lists, as apps/bough/results/frames.c writes them, and the shape of one of
-// them as a picture.
+// Reads frames.pvd and its frames, as apps/bough/results/frames.c writes them, and draws the shape of a
+// frame.
 #include "apps/bough/results/report.h"
 
 #include "apps/bough/results/folder.h"

@@ -342,7 +342,7 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
 
 // -- a rod that is a part of its table ------------------------------------------------------------
 
-// It gets a table of its own, which begins and ends between the stations of the given one.
+// Its table begins and ends between the stations of the given one.
 
 static double between(double f, double a, double b) { return (1 - f) * a + f * b; }
 
