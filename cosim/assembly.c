@@ -118,7 +118,7 @@ static bool resolvable(const bough_assembly *a, int i, const bool *resolved) {
 // An order in which every member comes after those on whose outputs its own depend directly.
 static bough_status order_outputs(bough_assembly *a, bool *resolved) {
     for (int n = 0; n < a->n_member; n++) {
-        // of those that can be evaluated, the one of the lowest level
+        // the next one has the lowest level of all that can be evaluated
         int best = -1;
         for (int i = 0; i < a->n_member; i++) {
             if (resolved[i] || !resolvable(a, i, resolved)) continue;

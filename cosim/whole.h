@@ -68,7 +68,7 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 // x ← (I − γJ)⁻¹ x, x (n_state); whole->change is then the change of the inputs with it.
 void bough_whole_solve(bough_whole *whole, double *x);
 
-// How all states, x (n_state), follow a change by 1 of one output of a member that does not move by itself.
+// Response x (n_state) of all states to a change by 1 of one output of a member that does not move by itself.
 void bough_whole_follow(bough_whole *whole, int output, double *x);
 
 // Removes the changes of quaternions' lengths from a change x (n_state) of `state`.

@@ -40,8 +40,8 @@ void bough_loops_correct(const bough_tree *tree, const bough_tree_data *data, co
 bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *data, int closure);
 
 // How far the closures are from a singular position, in which the bodies can go on in more than one way: the
-// smallest eigenvalue of G M⁻¹Gᵀ of those that differ from 0 at the start, relative to the largest [1], and
-// the closure with the largest component in its vector. Translations and rotations are scaled to the same
+// smallest eigenvalue of G M⁻¹Gᵀ, without those that are 0 at the start, relative to the largest [1], and the
+// closure with the largest component in its vector. Translations and rotations are scaled to the same
 // size. After bough_tree_forward_dynamics, whose factors of the closures it overwrites.
 double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *closure);
 

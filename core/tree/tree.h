@@ -92,8 +92,8 @@ typedef struct bough_closure_def {
     bough_vec3 axis, second_axis;
 } bough_closure_def;
 
-// A linear bushing: springs and dampers along and about the axes of its first marker, by the second
-// one's displacement and rotation vector (of less than π) against it.
+// A linear bushing: springs and dampers along and about the axes of its first marker, for displacement and
+// rotation vector (of less than π) of the second marker relative to it.
 typedef struct bough_bushing_def {
     int marker[2];                   // indices
     double stiffness[6], damping[6]; // three along, three about [N/m, N m/rad; times s]

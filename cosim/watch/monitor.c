@@ -17,8 +17,9 @@
 enum { FIRST_STEPS = 8 };
 static const double suspicious_growth = 100;
 
-// Difference of the forces obtained and applied, of the largest so far, below which an implicit coupling that
-// does not iterate is not the cause of any growth yet. (Explicit ones may apply all forces as obtained.)
+// Difference of the forces obtained and applied, relative to the largest so far. With a smaller one an
+// implicit coupling that does not iterate causes no growth yet. (Explicit ones may apply all forces as
+// obtained.)
 static const double agreement = 1e-5;
 
 // Up to three components of one connection: a vector, measured by its norm.
@@ -108,8 +109,8 @@ static double fastest_growth(const bough_coupling *c, const bough_scheme_options
     return bough_is_ok(&status) ? fmax(s.growth, s.rising) : -1;
 }
 
-// Difference of the forces obtained and applied, of the largest so far, from which the coupling of a member
-// with unknown equations is the cause: its growth alone may belong to the member.
+// The same, from which the coupling of a member with unknown equations is the cause of a growth, which alone
+// may belong to the member.
 static const double unrelated = 0.5;
 
 static bool coupling_grows(const bough_coupling *c, const group *g, double defect, double *growth) {

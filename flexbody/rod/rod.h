@@ -51,9 +51,8 @@ typedef struct bough_rod_part {
     double start[6], slope[6]; // at `from` [N/m, N or N, N m], and over the length [N/m², N/m]
 } bough_rod_part;
 
-// The sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes
-// of its middle, that such a wrench adds to what its forces and moments on the vertices by hat functions
-// cause.
+// The sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes of its
+// middle, by such a wrench, beyond that by its forces and moments on the vertices by hat functions.
 typedef struct bough_rod_model bough_rod_model;
 typedef struct bough_rod_sections {
     void (*strain)(const void *axis, const bough_rod_model *m, int n, const bough_rod_part *part,
@@ -263,9 +262,9 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                     bough_rod_scratch *scratch);
 
-// The smallest ratio of a segment's torsional stiffness to that below which, bent and under tension, it
-// twists although the rod does not, theory (111). Of the configuration in scratch->vertex, under the loads
-// that scratch had last.
+// Torsional stiffness over the one below which a segment that is bent and under tension twists although the
+// rod does not, theory (111): the smallest of all segments, for scratch->vertex under the last loads of
+// scratch.
 double bough_rod_twist_reserve(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
 // Kernels, each called at its model's level.

@@ -119,8 +119,8 @@ BOUGH_INLINE end_moments middle_moment_variation(segment_geometry shape, segment
                          half_backward_variation(shape, d, bough_add(half, tilt), bough_add(dhalf, dtilt))};
 }
 
-// Beside the chord of a bent segment its axis lies by −(h/12) of the tangent's change in the mean, where a
-// load per length acts: its moment on each of the two vertices.
+// Moment on each vertex of a load per length that acts on the axis of a bent segment: this lies beside the
+// chord, in the mean by −(h/12) of the tangent's change.
 BOUGH_INLINE bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 load) {
     return bough_scale(-h * h / 24, bough_cross(change, load));
 }

@@ -332,8 +332,8 @@ static bough_status follow_blades(bough_arena *arena, blades *b, const double *s
     return bough_ok();
 }
 
-// Relative error of the blades' tangent that means over the disk may cause, on which every state of a blade
-// has an influence.
+// Largest relative error of the blades' tangent by means over the disk, which depend on all states of a
+// blade.
 static const double disk = 1e-3;
 
 // Whether the tangent gives the rates that a change of all states of the blades and their air causes.

@@ -30,7 +30,7 @@ struct bough_blade_inverse {
     double *kinematic; // F (n_part × 7 × 13 × n_vertex)
 };
 
-// P of one blade by itself: what its kinematic and its dynamic states need of it.
+// The parts of P of one blade by itself that are used.
 typedef struct alone {
     double *dynamic; // rows d (d × r)
     double *vertex;  // each vertex' own block of all rows, transposed (n_vertex × 13 × 13)

@@ -36,8 +36,8 @@ static void mix_run(uint64_t *hash, const bough_case *c) {
 
 // -- scenes ---------------------------------------------------------------------------------------
 
-// Whether an error in a scene concerns this replacement: its path is that of the key, or of the key's parent
-// if the key is unknown and named in the text.
+// Whether an error in a scene concerns this replacement: it is at the key, or, for an unknown key, at the
+// key's parent and names it.
 static bool concerns(const bough_error *e, const bough_study_setting *setting) {
     if (strcmp(e->path, setting->key) == 0) return true;
     char word[96];
@@ -67,8 +67,7 @@ static void report(const bough_error *e, const char *scene, const bough_node *or
     if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
-// The place in the study of the replacement that an error in the case's scene concerns, the last one of a
-// key.
+// Where the study has the replacement that an error in the case's scene concerns; of one key the last.
 static const bough_node *origin(const bough_study *s, const bough_case *c, const bough_error *e) {
     for (int i = c->n_set - 1; i >= 0; i--)
         if (c->setting[i] && concerns(e, c->setting[i])) return c->setting[i]->node;

@@ -5,9 +5,9 @@
 #include "apps/bough/analysis/vibration.h"
 #include "apps/bough/cli/command.h"
 
-// Solves every point of --sweep and writes campbell.csv and campbell.svg. `until_unstable`: the points up to
-// the first at which an oscillation grows, or a motion without one where the rotor is not free, then the
-// place between it and the one before from which on it does.
+// Solves every point of --sweep and writes campbell.csv and campbell.svg. `until_unstable`: ends at the
+// first point at which an oscillation grows, or a divergence where the rotor is not free, and finds where the
+// growth begins between this point and the one before.
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable);
 

@@ -82,7 +82,7 @@ void bough_draft_tower(bough_draft *d, double foot);
 void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
                          double efficiency);
 
-// The name of an airfoil's polar: its number and what is known of it, in letters that a scene's names have.
+// The name of an airfoil's polar: its number, and `text` in the letters that names in scenes may have.
 enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
 

@@ -146,11 +146,10 @@ bough_sharpest bough_simulation_bend(const bough_simulation *s, const bough_beam
 // bough_simulation_update; false as bough_tree_forward_dynamics.
 bool bough_simulation_accelerate(const bough_simulation *s, double t);
 
-// The wrench of a rod on its carrier, in the body's axes at its origin, and behind it the wrench of its end
-// on the bodies that it carries, force in the body's axes and moment in the section's [N, N m]; of a rigid
-// body on its carrier, zero where other bodies, elements or loads act on it. Weight and inertia of the
-// vertices there, which the tree carries, are those of the rod. Reads the accelerations of
-// bough_simulation_accelerate.
+// The wrench of a rod on its carrier, in the body's axes at its origin, and behind it that of its end on the
+// bodies that it carries, force in the body's axes and moment in the section's [N, N m]. For a rigid body the
+// wrench on its carrier, zero where other bodies, elements or loads act on it. Weight and inertia of the end
+// vertices, which the tree carries, are included. Reads the accelerations of bough_simulation_accelerate.
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 
