@@ -173,13 +173,11 @@ bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, doubl
 }
 
 bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c, double x) {
-    return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
-                              .b = {{0}, {c / s.m, k / s.m}},
-                              .c = {{0, 1}, {1, 0}},
-                              .n_state = 2,
-                              .n_input = 2,
-                              .n_output = 2,
-                              .y = {x, 0}};
+    bough_oscillator o = bough_oscillator_motion_in(s, k, c, x), out = bough_oscillator_force_in(s, 1, x);
+    memcpy(o.c, out.c, sizeof o.c);
+    memcpy(o.d, out.d, sizeof o.d);
+    o.n_output = out.n_output;
+    return o;
 }
 
 bough_oscillator bough_oscillator_link(double k, double c) {
