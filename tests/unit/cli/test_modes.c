@@ -17,10 +17,8 @@ static void build(setup *s, bough_two_mass masses) {
     s->m = masses;
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
-    bough_status status = bough_two_mass_build(check_memory(), &s->m, def);
-    check_ok(status);
+    check_ok(bough_two_mass_build(check_memory(), &s->m, def));
     s->whole = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
-    assert_true(bough_is_ok(&status));
     bough_whole_inputs(s->whole, 0, s->m.y0);
     s->def = (bough_modes_def){.state = s->m.y0, .input = s->whole->input, .point = 1};
 }

@@ -244,10 +244,8 @@ TEST(radius_is_that_of_the_loop) {
     bough_assembly_def def = {2, part, 2, connection};
     bough_assembly *a;
     bough_interface *k;
-    bough_status status = bough_assembly_build(arena, &def, &a);
-    check_ok(status);
+    check_ok(bough_assembly_build(arena, &def, &a));
     k = bough_interface_create(arena, a);
-    assert_true(bough_is_ok(&status));
     const double zero[MOST] = {0};
     bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};
     for (int i = 0; i < 2; i++) assert_true(bough_interface_linearise(k, i, &at));

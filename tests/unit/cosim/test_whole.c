@@ -10,12 +10,9 @@ static void build(bough_two_mass *m, bough_whole **whole, int threads) {
     *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
-    bough_status status = bough_two_mass_build(check_memory(), m, def);
-    check_ok(status);
+    check_ok(bough_two_mass_build(check_memory(), m, def));
     pool = bough_pool_create(m->arena, threads);
-    assert_true(bough_is_ok(&status));
     *whole = bough_whole_create(m->arena, m->master->assembly, pool);
-    assert_true(bough_is_ok(&status));
 }
 
 // A solution is that of a member by itself and what all states follow of its outputs.

@@ -13,10 +13,8 @@ static void build(setup *s) {
     s->m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
-    bough_status status = bough_two_mass_build(check_memory(), &s->m, def);
-    check_ok(status);
+    check_ok(bough_two_mass_build(check_memory(), &s->m, def));
     s->whole = bough_whole_create(s->m.arena, s->m.master->assembly, NULL);
-    assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);
 }
 
