@@ -18,9 +18,9 @@ static const bough_schema master_schema = {.name = "a solver", KEYS(
      .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
              "rosenbrock: linearly implicit Runge-Kutta of order 3; automatic: rosenbrock, and ida "
-             "at a tenth of rtol where that takes fewer evaluations. The monolithic scheme's default "
-             "is automatic, or ida with an rtol below 1e-6; that of rigid bodies in closed loops or on free "
-             "joints, up to 400 states, radau5"},
+             "at a tenth of rtol where that takes fewer evaluations. The monolithic scheme's default is radau5 "
+             "for rigid bodies alone, in closed loops up to 400 states, else up to 65 without air, control "
+             "and stops; otherwise automatic, or ida with an rtol below 1e-6"},
     RTOL,
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro "
