@@ -20,7 +20,7 @@ static fixture with_block(const char *more, const char *const *sets, int n_set) 
                         "  tilt: 5 deg\n  overhang: 5.0191 m\n  cone: 2.5 deg\n  hub_radius: 1.5 m\n"
                         "  speed: 0.5 rad/s\n  nacelle: {mass: 240 t, centre_of_mass: [1.9, 0, 1.75]}\n"
                         "  hub: {mass: 56780 kg, inertia: [5.1414234e6, 2.6e6, 2.6e6]}\n"
-                        "  blade: {rod: {table: blade-structure.yaml, segments: 24, grading: 0.2}}\n%s",
+                        "  blade: {rod: {table: blade-structure.yaml, segments: 24, grading: 0.19}}\n%s",
              more);
     write_file("s.yaml", text);
     fixture f = read_scene("s.yaml", sets, n_set);
