@@ -376,10 +376,22 @@ static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int
         name, fabs(d->loops->row[row].value), turning ? "(sine of an angle)" : "m");
 }
 
+// Moves the coordinates by the correction, at most by the longest step.
+static void move(bough_tree *tree, bough_tree_data *d) {
+    bough_loops *l = d->loops;
+    double *q = tree->initial, largest = 0;
+    for (int k = 0; k < tree->n_v; k++) largest = fmax(largest, fabs(l->correction[k]));
+    for (int k = 0; k < tree->n_v && largest > longest; k++) l->correction[k] *= longest / largest;
+    bough_loops_correct(tree, d, q, q);
+    for (int i = 0; i < tree->n_links; i++)
+        bough_joint_normalise(&tree->links[i].joint, q + tree->links[i].first_coordinate);
+    for (int k = 0; k < tree->n_v; k++)
+        tree->closure_moved = fmax(tree->closure_moved, fabs(l->correction[k]));
+}
+
 // One step of Newton's method, the least in the measure of the inertias.
 static bool approach(bough_tree *tree, bough_tree_data *d) {
     bough_loops *l = d->loops;
-    double *q = tree->initial;
     memset(l->multiplier, 0, (size_t)tree->n_rows * sizeof(double));
     if (!bough_tree_free_dynamics(tree, d, 0, NULL, l->speed) || !find_mobility(tree, d)) {
         return false;
@@ -388,27 +400,8 @@ static bool approach(bough_tree *tree, bough_tree_data *d) {
     for (int k = 0; k < tree->n_rows; k++) x[k] = l->row[k].value;
     solve(tree, l, x);
     spread(tree, l, x, l->correction);
-    double largest = 0;
-    for (int k = 0; k < tree->n_v; k++) largest = fmax(largest, fabs(l->correction[k]));
-    for (int k = 0; k < tree->n_v && largest > longest; k++) l->correction[k] *= longest / largest;
-    bough_loops_correct(tree, d, q, q);
-    for (int i = 0; i < tree->n_links; i++)
-        bough_joint_normalise(&tree->links[i].joint, q + tree->links[i].first_coordinate);
-    for (int k = 0; k < tree->n_v; k++)
-        tree->closure_moved = fmax(tree->closure_moved, fabs(l->correction[k]));
+    move(tree, d);
     return true;
-}
-
-static bough_status assemble_positions(bough_tree *tree, bough_tree_data *d, double size) {
-    double violation;
-    for (int i = 0;; i++) {
-        bough_tree_kinematics(tree, tree->initial, d);
-        bough_loops_rows(tree, d);
-        int row = worst_row(tree, d, false, size, &violation);
-        if (violation <= satisfied && i > 0) return bough_ok();
-        bool far = i == 0 && violation > near_enough;
-        if (far || i == MOST_ITERATIONS || !approach(tree, d)) return refuse(tree, d, row, false);
-    }
 }
 
 // Row `row` of G
@@ -428,21 +421,26 @@ static void jacobian_row(const bough_tree *tree, const bough_tree_data *d, int r
     }
 }
 
-// Speeds that are zero follow those that are given: the least squares of G δ = −G v over them, or,
-// with all of them free, over all.
-static bool follow(bough_tree *tree, bough_tree_data *d, bool all) {
+// What may change besides joints whose speed is zero: those of given speed, the ends of rods.
+enum { JOINTS = 0, GIVEN = 1, ENDS = 2 };
+
+// change (n_v): the least one by which the closures have their values or, `of_rate`, their rates.
+static bool least_squares(bough_tree *tree, bough_tree_data *d, int loose, bool of_rate, double *change) {
     bough_loops *l = d->loops;
     int m = tree->n_rows, n = tree->n_v;
-    double *v = tree->initial + tree->n_q, *x = l->work + 4 * m;
+    const double *v = tree->initial + tree->n_q;
+    double *x = l->work + 4 * m;
     for (int j = 0; j < m; j++) {
         double *g = l->response + (size_t)j * (size_t)n;
         jacobian_row(tree, d, j, g);
         for (int k = 0; k < n; k++) {
-            if (!all && v[k] != 0) g[k] = 0;
+            if (!(loose & GIVEN) && v[k] != 0) g[k] = 0;
         }
         for (int i = 0; i < tree->n_links; i++) {
             if (tree->links[i].motion != NULL) g[tree->links[i].first_speed] = 0;
         }
+        for (int e = 0; e < tree->n_ends && !(loose & ENDS); e++)
+            memset(g + tree->links[tree->ends[e].link].first_speed, 0, BOUGH_JOINT_SPEEDS * sizeof *g);
     }
     for (int i = 0; i < m; i++) {
         for (int j = 0; j < m; j++) {
@@ -452,23 +450,58 @@ static bool follow(bough_tree *tree, bough_tree_data *d, bool all) {
         }
     }
     if (!factor(tree, l)) return false;
-    for (int j = 0; j < m; j++) x[j] = l->row[j].rate;
+    for (int j = 0; j < m; j++) x[j] = of_rate ? l->row[j].rate : l->row[j].value;
     solve(tree, l, x);
-    spread(tree, l, x, l->speed);
-    for (int k = 0; k < n; k++) v[k] -= l->speed[k];
+    spread(tree, l, x, change);
+    return true;
+}
+
+// Newton's method by the joints alone: rods keep their shapes, which their ends would strain.
+static void close_joints(bough_tree *tree, bough_tree_data *d, double size) {
+    double violation;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        bough_tree_kinematics(tree, tree->initial, d);
+        bough_loops_rows(tree, d);
+        worst_row(tree, d, false, size, &violation);
+        if (violation <= satisfied || violation > near_enough) return;
+        if (!least_squares(tree, d, GIVEN, false, d->loops->correction)) return;
+        move(tree, d);
+    }
+}
+
+static bough_status assemble_positions(bough_tree *tree, bough_tree_data *d, double size) {
+    double violation;
+    if (tree->n_ends > 0) close_joints(tree, d, size);
+    for (int i = 0;; i++) {
+        bough_tree_kinematics(tree, tree->initial, d);
+        bough_loops_rows(tree, d);
+        int row = worst_row(tree, d, false, size, &violation);
+        if (violation <= satisfied && i > 0) return bough_ok();
+        bool far = i == 0 && violation > near_enough;
+        if (far || i == MOST_ITERATIONS || !approach(tree, d)) return refuse(tree, d, row, false);
+    }
+}
+
+// Speeds that are zero follow those that are given, by the joints alone where that is enough, or, in the
+// last attempts, all change.
+static bool follow(bough_tree *tree, bough_tree_data *d, int loose) {
+    double *v = tree->initial + tree->n_q, *change = d->loops->speed;
+    if (!least_squares(tree, d, loose, true, change)) return false;
+    for (int k = 0; k < tree->n_v; k++) v[k] -= change[k];
     return true;
 }
 
 static bough_status assemble_speeds(bough_tree *tree, bough_tree_data *d, double size) {
     double violation, fastest = 0;
     for (int k = 0; k < tree->n_v; k++) fastest = fmax(fastest, fabs(tree->initial[tree->n_q + k]));
-    for (int attempt = 0;; attempt++) {
+    for (int attempt = tree->n_ends > 0 ? -1 : 0;; attempt++) {
         bough_tree_kinematics(tree, tree->initial, d);
         bough_loops_rows(tree, d);
         int row = worst_row(tree, d, true, size, &violation);
         if (violation <= satisfied * fastest) return bough_ok();
+        int loose = attempt < 0 ? JOINTS : attempt == 0 ? ENDS : GIVEN | ENDS;
         bool far = attempt == 1 && violation > near_enough * fastest;
-        if (far || attempt == 3 || !follow(tree, d, attempt > 0)) return refuse(tree, d, row, true);
+        if (far || attempt == 3 || !follow(tree, d, loose)) return refuse(tree, d, row, true);
     }
 }
 

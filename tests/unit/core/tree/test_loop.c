@@ -152,19 +152,39 @@ static void compare_wrenches(fixture *open, fixture *closed) {
     check_near(bough_norm(off.moment) / (1 + bough_norm(joint.moment)), 0, 0, 1e-9);
 }
 
+// Lengths of a tree that only turns, and with them what its motion scales by.
+static void resize(bough_tree_def *def, bough_body_def *b, double size) {
+    def->gravity = bough_scale(size, def->gravity);
+    for (int i = 0; i < 2; i++) {
+        b[i].joint.position = bough_scale(size, b[i].joint.position);
+        b[i].mass_centre = bough_scale(size, b[i].mass_centre);
+        bough_vec3 *column[] = {&b[i].inertia.c1, &b[i].inertia.c2, &b[i].inertia.c3};
+        for (int j = 0; j < 3; j++) *column[j] = bough_scale(size * size, *column[j]);
+    }
+}
+
+// The tree with the joint and the one with a closure in its place.
+static void build_both(bough_joint_kind kind, int solver, double size, fixture *open, fixture *closed) {
+    bough_body_def b[2];
+    bough_marker_def m[2];
+    bough_closure_def c;
+    base_and_arm(b, kind);
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 2, .bodies = b};
+    resize(&def, b, size);
+    *open = build_with(&def, BOUGH_RADAU5, 1e-11);
+    bough_tree_kinematics(open->tree, open->m->state, open->data);
+    bough_vec3 gravity = def.gravity;
+    def = closed_def(b, m, &c, open);
+    def.gravity = gravity;
+    *closed = build_with(&def, solver, 1e-9);
+    bough_tree_kinematics(closed->tree, closed->m->state, closed->data);
+}
+
 TEST(closures_act_as_the_joints_they_replace) {
     for (int k = 0; k < KINDS; k++) {
         for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
-            bough_body_def b[2];
-            bough_marker_def m[2];
-            bough_closure_def c;
-            base_and_arm(b, kinds[k]);
-            bough_tree_def def = {.gravity = down_z, .n_bodies = 2, .bodies = b};
-            fixture open = build_with(&def, BOUGH_RADAU5, 1e-11);
-            bough_tree_kinematics(open.tree, open.m->state, open.data);
-            def = closed_def(b, m, &c, &open);
-            fixture closed = build_with(&def, solver, 1e-9);
-            bough_tree_kinematics(closed.tree, closed.m->state, closed.data);
+            fixture open, closed;
+            build_both(kinds[k], solver, 1, &open, &closed);
             compare(&open, &closed, 1e-9);
             compare_wrenches(&open, &closed);
             assert_int_equal(closed.tree->closure_rank, 6 - bough_joint_n_speeds(kinds[k]));
@@ -180,33 +200,6 @@ TEST(closures_act_as_the_joints_they_replace) {
     }
 }
 
-// Lengths of a tree that only turns, and with them what its motion scales by.
-static void resize(bough_tree_def *def, bough_body_def *b, double size) {
-    def->gravity = bough_scale(size, def->gravity);
-    for (int i = 0; i < 2; i++) {
-        b[i].joint.position = bough_scale(size, b[i].joint.position);
-        b[i].mass_centre = bough_scale(size, b[i].mass_centre);
-        bough_vec3 *column[] = {&b[i].inertia.c1, &b[i].inertia.c2, &b[i].inertia.c3};
-        for (int j = 0; j < 3; j++) *column[j] = bough_scale(size * size, *column[j]);
-    }
-}
-
-static fixture closed_of_size(bough_joint_kind kind, double size) {
-    bough_body_def b[2];
-    bough_marker_def m[2];
-    bough_closure_def c;
-    base_and_arm(b, kind);
-    bough_tree_def def = {.gravity = down_z, .n_bodies = 2, .bodies = b};
-    resize(&def, b, size);
-    fixture open = build_with(&def, BOUGH_RADAU5, 1e-9);
-    bough_tree_kinematics(open.tree, open.m->state, open.data);
-    bough_tree_def closed = closed_def(b, m, &c, &open);
-    closed.gravity = def.gravity;
-    fixture f = build_with(&closed, BOUGH_RADAU5, 1e-9);
-    bough_arena_destroy(open.arena);
-    return f;
-}
-
 // A mechanism of another size turns as the one of 1 m does.
 TEST(closures_act_alike_in_every_size) {
     static const bough_joint_kind turning[] = {BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_UNIVERSAL,
@@ -215,7 +208,9 @@ TEST(closures_act_alike_in_every_size) {
     for (int k = 0; k < 3; k++) {
         bough_vec3 expected[2];
         for (int j = 0; j < 5; j++) {
-            fixture f = closed_of_size(turning[k], sizes[j]);
+            fixture open, f;
+            build_both(turning[k], BOUGH_RADAU5, sizes[j], &open, &f);
+            bough_arena_destroy(open.arena);
             assert_int_equal(f.tree->closure_rank, 6 - bough_joint_n_speeds(turning[k]));
             // the integrator's tolerance is one of 1 m
             int steps = j < 3 ? 20 : 0;
@@ -432,26 +427,35 @@ TEST(violations_decay) {
 
 // -- assembly --------------------------------------------------------------------------------
 
+// The closure on the coupler or on the end of a rod, which keeps its place on the coupler, its root.
 TEST(loops_are_assembled_from_near) {
-    windows w;
-    make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
-    w.body[0].coordinates[0] = 0.5;
-    w.body[1].coordinates[0] = 0.52;
-    w.body[2].coordinates[0] = -0.53;
-    w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
-    fixture f = build_with(&w.def, BOUGH_RADAU5, 1e-9);
-    bough_tree_kinematics(f.tree, f.m->state, f.data);
-    check_closed(&f, 1e-10);
-    assert_true(f.tree->closure_moved > 1e-3 && f.tree->closure_moved < 0.05);
-    check_near(f.m->state[1], f.m->state[0], 1e-9, 0); // a parallelogram
-    check_near(f.m->state[2], -f.m->state[0], 1e-9, 0);
-    check_near(f.m->state[3], 1, 0, 0); // given
-    check_near(f.m->state[4], 1, 1e-9, 0);
-    check_near(f.m->state[5], -1, 1e-9, 0);
+    for (int ends = 0; ends <= 1; ends++) {
+        windows w;
+        make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
+        w.body[0].coordinates[0] = 0.5;
+        w.body[1].coordinates[0] = 0.52, w.body[2].coordinates[0] = -0.53;
+        w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
+        w.body[3] = rod("end", 2, 0, 0);
+        w.body[3].kind = BOUGH_JOINT_FREE;
+        w.body[3].coordinates[0] = w.body[3].coordinates[3] = 1;
+        w.body[3].inertia = diagonal(0.1, 0.1, 0.1);
+        const bough_end_def end = {.body = 3};
+        if (ends > 0) w.marker[0] = (bough_marker_def){"end", 3, bough_transform_identity()};
+        w.def.n_bodies += ends, w.def.n_ends = ends, w.def.ends = &end;
+        fixture f = build_with(&w.def, BOUGH_RADAU5, 1e-9);
+        bough_tree_kinematics(f.tree, f.m->state, f.data);
+        check_closed(&f, 1e-10);
+        assert_true(f.tree->closure_moved > 1e-3 && f.tree->closure_moved < 0.05);
+        const double *q = f.m->state, *v = q + f.tree->n_q;
+        const double sign[] = {1, 1, -1}; // a parallelogram
+        for (int k = 0; k < 3; k++) check_near(q[k], sign[k] * q[0], 1e-9, 0);
+        for (int k = 0; k < 3; k++) check_near(v[k], sign[k], k > 0 ? 1e-9 : 0, 0); // the first is given
+        for (int k = 0; k < 7 * ends; k++) check_near(q[3 + k], k == 0 || k == 3, 0, 1e-9);
+        bough_arena_destroy(f.arena);
+    }
 }
 
-// A shallow arch of rods whose far end must move by much more than the joints' first step would
-// hit.
+// A shallow arch of rods whose far end must move by much more than the joints' first step.
 TEST(arches_are_assembled) {
     enum { RODS = 8 };
     bough_body_def body[RODS];
@@ -467,9 +471,7 @@ TEST(arches_are_assembled) {
     marker[1].placement.position = bough_v3(7.75, 0, 0);
     const bough_closure_def closure = {"pin", BOUGH_JOINT_SPHERICAL, {0, 1}, {0, 0, 1}, {1, 0, 0}};
     bough_tree_def def = {.gravity = down_z, .n_bodies = RODS, .bodies = body, .n_markers = 2};
-    def.markers = marker;
-    def.n_closures = 1;
-    def.closures = &closure;
+    def.markers = marker, def.n_closures = 1, def.closures = &closure;
     fixture f = build_with(&def, BOUGH_RADAU5, 1e-8);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     check_closed(&f, 1e-9);
