@@ -135,10 +135,10 @@ def error_of(run, truth, estimate):
     for error, estimated, span, size, unit in errors.values():
         largest[unit] = max(largest[unit], span)
     most = max([SI.get(unit, 1) * max(span, min(size, 1 / SI.get(unit, 1)))
-                for _, _, span, size, unit in errors.values()], default=0)
+                for _, _, span, size, unit in errors.values() if is_motion(unit)], default=0)
     return {vector: (error / span, estimated / span) for vector, (error, estimated, span, size, unit) in errors.items()
             if span > FLOOR * largest[unit] and span > FLOOR * (0 if is_motion(unit) else size)
-            and SI.get(unit, 1) * span > ROUNDING * most}
+            and SI.get(unit, 1) * span > (ROUNDING * most if is_motion(unit) else 0)}
 
 
 def is_motion(unit):
