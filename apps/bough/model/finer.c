@@ -1,12 +1,16 @@
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/validity.h"
 
-enum { FOLLOWED = 8 }; // macro steps from the start, or from a jump on
+// How long it stands beside the run from the start, or from a jump on, and its largest work.
+typedef struct extent {
+    int steps;     // macro steps; where an error grows without air, it goes on
+    double part;   // work relative to that of run and companion, extrapolated to the end
+    double little; // work that is never too much, once for the start and once for all jumps [µs]
+} extent;
 
-// Its largest work, relative to that of run and companion, extrapolated to the end; and as many microseconds
-// more, in its first macro step and later.
-static const double most_work = 0.1;
-static const double little_at_first = 2000, little = 3000;
+static extent extent_of(const bough_scene *scene) {
+    return scene->aero.node ? (extent){8, 0.1, 2000} : (extent){4, 0.05, 1000};
+}
 
 // Steps in its first macro step that are never too much work.
 static const double least_steps = 250;
@@ -40,7 +44,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
     f->ratio = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_ratio();
-    f->until = (FOLLOWED + 0.5) * scene->simulation.macro_step;
+    f->until = (extent_of(scene).steps + 0.5) * scene->simulation.macro_step;
     f->n_jump = bough_jump_times(scene, least_jump, NULL);
     f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
     bough_jump_times(scene, least_jump, f->jump);
@@ -68,10 +72,11 @@ static double next_jump(const bough_finer *f, double t) {
     return k < f->n_jump ? f->jump[k] : HUGE_VAL;
 }
 
-// The work that it may still take, a tenth of all and `more`; unlimited at time 0.
-static double work_left(const bough_finer *f, const bough_master *run, double work, double more) {
+// The work that it may still take; unlimited at time 0.
+static double work_left(const bough_finer *f, const bough_master *run, double work, bool jumps) {
     double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
-    return most_work * whole + more - f->work;
+    extent most = extent_of(f->other.simulation->scene);
+    return most.part * whole + (jumps ? 2 : 1) * most.little - f->work;
 }
 
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
@@ -79,7 +84,7 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
     const bough_simulation *own = f->other.simulation;
     int most = own->scene->simulation.master.most_steps;
     if (own->master->time > f->from) return most;
-    double allowed = work_left(f, run, work, little_at_first) / bough_other_run_work_of_step(&f->other);
+    double allowed = work_left(f, run, work, f->from > 0) / bough_other_run_work_of_step(&f->other);
     return (int)fmin(most, fmax(least_steps, allowed));
 }
 
@@ -87,14 +92,15 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    if (jump > m->time + reach || work_left(f, m, work, little) < 0 || !bough_master_sampled(m)) return;
+    if (jump > m->time + reach || work_left(f, m, work, true) < 0 || !bough_master_sampled(m)) return;
     if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = steps_of(run);
     f->follows = true;
-    f->until = jump + (FOLLOWED + 0.5) * m->macro_step;
+    f->until = jump + (extent_of(run->scene).steps + 0.5) * m->macro_step;
 }
 
 void bough_finer_go_on(bough_finer *f, const bough_master *run) {
-    f->until = fmax(f->until, 2 * run->time - f->from + FOLLOWED * run->macro_step);
+    int more = extent_of(f->other.simulation->scene).steps;
+    f->until = fmax(f->until, 2 * run->time - f->from + more * run->macro_step);
 }
 
 // Whether it has failed because it needs more steps than are allowed, and the run may pass over the same
@@ -107,7 +113,7 @@ static bool gave_up(const bough_finer *f, int allowed, long steps, long by_run) 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     if (!f->follows || run->master->time > f->until) return f->follows = false;
-    if (work_left(f, run->master, work, little) < 0) {
+    if (work_left(f, run->master, work, f->from > 0) < 0) {
         f->left = own->master->time;
         return f->follows = false;
     }
