@@ -101,6 +101,10 @@ static bool meets_run(const bough_companion *c) {
     return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
 }
 
+bool bough_companion_air_sampled(const bough_simulation *s) {
+    return !s->aero || fabs(remainder(s->master->time * s->scene->aero.rate, 1)) < 1e-6;
+}
+
 static double missed_air(const bough_simulation *s) {
     double missed = 0;
     for (int b = 0; s->aero && b < s->scene->turbine.n_blade; b++)
@@ -113,6 +117,7 @@ static void take_row(bough_companion *c) {
     bough_companion_row *row = &c->row[c->n_row++];
     row->time = s->master->time;
     row->sampled = bough_master_sampled(s->master);
+    row->air_sampled = bough_companion_air_sampled(s);
     row->missed_air = missed_air(s);
     row->work = bough_simulation_work(s);
     c->coarser.value = row->value;
@@ -184,9 +189,8 @@ static bool flutters(double run, double companion) {
 
 // 1/Q of a channel. A sampled channel that the companion holds one sample longer differs by the change in
 // that time.
-static double ratio_of(const bough_companion *c, const bough_channel *channel, double ratio,
-                       double ratio_held) {
-    if (channel->sampled) return ratio_held;
+static double ratio_of(const bough_companion *c, const bough_channel *channel, double ratio, bool held) {
+    if (channel->sampled) return held ? c->ratio_held : ratio;
     bool follows = channel->kind == BOUGH_KIND_FORCE && !bough_coarser_steps_alone(c->run->scene);
     return follows ? fmax(ratio, least_ratio_of_force) : ratio;
 }
@@ -251,7 +255,7 @@ static void compare_finer(bough_companion *c, double work) {
         extrapolate(c);
         return;
     }
-    bool held = !bough_master_sampled(c->run->master), grows = false;
+    bool held = !bough_companion_air_sampled(c->run), grows = false;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (held && channel->sampled) continue; // an older sample than the finer one
@@ -289,7 +293,7 @@ static void record(bough_companion *c, double error) {
     if (r->taken++ > 0 && error <= row[BOUGH_RECORD_ERROR]) return;
     row[BOUGH_RECORD_TIME] = c->run->master->time;
     row[BOUGH_RECORD_ERROR] = error;
-    row[BOUGH_RECORD_HELD] = !c->row[c->present].sampled;
+    row[BOUGH_RECORD_HELD] = !c->row[c->present].air_sampled;
     memcpy(row + BOUGH_RECORD_RUN, c->value, n * sizeof *row);
     memcpy(row + BOUGH_RECORD_RUN + n, c->coarser.value, n * sizeof *row);
 }
@@ -387,12 +391,14 @@ static void compare(bough_companion *c) {
     // the rarer sample is held longer; at an event, between two steps, that of the run
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     const bough_companion_row *row = &c->row[c->present];
-    bool held = rarer ? !row->sampled : c->run->master->at_event;
+    bool at_event = c->run->master->at_event;
+    const bool held[] = {[BOUGH_BY_AIR] = rarer ? !row->air_sampled : at_event,
+                         [BOUGH_BY_CONTROL] = rarer ? !row->sampled : at_event};
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
     // steps of any length meet a contact at a chance time, so that both solutions err alike
     if (c->ratio < 1 && strikes(c->run)) c->ratio = 1;
-    double ratio = resolved ? c->ratio : fmax(c->ratio, 1), ratio_held = held ? c->ratio_held : ratio;
+    double ratio = resolved ? c->ratio : fmax(c->ratio, 1);
     c->flutters = c->flutters || flutters(missed_air(c->run), row->missed_air);
     memcpy(c->before, c->value, (size_t)c->channels->count * sizeof(double));
     sample(c);
@@ -400,7 +406,7 @@ static void compare(bough_companion *c) {
     double largest = 0;
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
-        double error = ratio_of(c, channel, ratio, ratio_held) *
+        double error = ratio_of(c, channel, ratio, held[channel->sampled]) *
                        fabs(difference(channel, c->value[i], c->coarser.value[i]));
         double late = stale(c, i);
         error = error > late ? error : late;

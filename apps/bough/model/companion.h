@@ -161,6 +161,7 @@ enum { BOUGH_COMPANION_ROWS = 16 };
 typedef struct bough_companion_row {
     double time;       // [s]
     bool sampled;      // its loads are sampled
+    bool air_sampled;  // the air among them
     double missed_air; // largest error of the air's loads between two samples [1]
     double work;       // so far (bough_simulation_work)
     double *value;     // (channels->count), where the time counts
@@ -225,6 +226,9 @@ bool bough_companion_compares(const bough_companion *c);
 
 // Whether the channel's error is known.
 bool bough_companion_knows(const bough_companion *c, int channel);
+
+// Whether the air of a run, or of another beside it, is sampled at its time; true without air.
+bool bough_companion_air_sampled(const bough_simulation *s);
 
 // Whether the companion can be stored now, when it may be a step ahead of the run: its loads are sampled, as
 // a copy needs.

@@ -140,7 +140,8 @@ static bough_status run_beside(bough_arena *arena, void *self) {
         if (m->time != row[BOUGH_RECORD_TIME]) continue;
         bough_other_run_sample(&other);
         compare(&other.channels, companion, other.value, row[BOUGH_RECORD_HELD] != 0, &f->to_companion);
-        compare(&other.channels, run, other.value, !bough_master_sampled(m), &f->to_run);
+        compare(&other.channels, run, other.value, !bough_companion_air_sampled(other.simulation),
+                &f->to_run);
         if (f->parts == OWN_MESH && is_by_mesh_early(f->of)) break;
     }
     return bough_ok();
