@@ -194,6 +194,19 @@ TEST(a_tight_tolerance_becomes_much_larger) {
     }
 }
 
+// Dense matrices limit Radau IIA to 400 states, which a finer mesh may pass.
+TEST(a_finer_mesh_may_be_too_large_for_radau) {
+    static const char bar[] = "tests/data/scenes/struck-bar.yaml";
+    static const int segments[] = {16, 24}, solver[] = {BOUGH_RADAU5, BOUGH_AUTOMATIC};
+    check_arena(arena);
+    for (int k = 0; k < 2; k++) {
+        char set[40];
+        snprintf(set, sizeof set, "bodies[bar].rod.segments=%d", segments[k]);
+        coarser x = coarser_of(arena, bar, "simulation.master.solver=radau5", set);
+        assert_int_equal(x.other->simulation.master.solver, solver[k]);
+    }
+}
+
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
 // twice as long.
 TEST(a_coupling_has_a_monolithic_companion) {
