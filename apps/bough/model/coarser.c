@@ -34,11 +34,10 @@ enum { LEAST_SEGMENTS = 8 }; // of a finer rod: one or two cost as much time
 // differs by enough.
 enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
 
-// Half as many segments more, which cost less than twice as many.
-static int finer_number(int n) { return n > 5 ? (3 * n + 1) / 2 : LEAST_SEGMENTS; }
+static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
 
-// About half of n segments. A rod of few segments, or one that cannot have many fewer, gets more: the
-// difference measures the error as well.
+// About half of n segments. A rod of few segments, or one that cannot have many fewer, gets at least twice as
+// many: the difference measures the error as well.
 static int other_number(int n, int least) {
     int half = (n + 1) / 2, fewer = half > least ? half : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : finer_number(n);
@@ -54,13 +53,16 @@ static int least_of_blades(const bough_scene *scene) {
     return most;
 }
 
-// Whether a body or, for a blade, one of all blades is modal. Its states are its modes, so that a finer mesh
-// adds no states; few segments have too few modes.
+// The states of a modal body are its modes, so that a finer mesh adds no states; few segments have too few
+// modes.
 static bool is_modal(const bough_scene *scene, int body) {
-    if (bough_scene_blade(scene, body) < 0) return scene->body[body].fidelity != BOUGH_SCENE_ROD;
+    return scene->body[body].fidelity != BOUGH_SCENE_ROD;
+}
+
+static bool has_modal_blades(const bough_scene *scene) {
     bool modal = false;
     for (int k = 0; k < scene->turbine.n_blade; k++)
-        modal = modal || scene->body[scene->turbine.blade[k]].fidelity != BOUGH_SCENE_ROD;
+        modal = modal || is_modal(scene, scene->turbine.blade[k]);
     return modal;
 }
 
@@ -105,19 +107,18 @@ static int least_of(const bough_scene *scene, int body) {
     return bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
 }
 
-// Modal bodies get twice as many, at least eight, in pieces of equal length; unequal ones of run and
-// companion can err alike.
+// Modal bodies get pieces of equal length; unequal ones of run and companion can err alike.
 static int finer_segments(const bough_scene *scene, int body) {
-    int n = scene->body[body].rod.n_segment, pieces = least_of(scene, body);
-    if (!is_modal(scene, body)) return finer_number(n);
-    return ((n > 4 ? 2 * n : LEAST_SEGMENTS) + pieces - 1) / pieces * pieces;
+    int n = finer_number(scene->body[body].rod.n_segment), pieces = least_of(scene, body);
+    return (n + pieces - 1) / pieces * pieces;
 }
 
 // What a rod gets whatever the others have.
 static int own_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
-    if (is_modal(scene, body) || has_short_pulses(scene)) return finer_segments(scene, body);
+    bool modal = blade ? has_modal_blades(scene) : is_modal(scene, body);
+    if (modal || has_short_pulses(scene)) return finer_segments(scene, body);
     return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
@@ -188,14 +189,14 @@ static double usual_ratio(const bough_scene *scene) {
     return whole ? 1 : 0.5;
 }
 
-// At order 2 the error of n segments is 1/(r² − 1) of the difference to n/r segments, and 1/(1 − r²) where
-// these are more; times 3/4, but not less than the whole difference beside a finer mesh.
+// At order 2 the error of n segments is 1/(r² − 1) of the difference to n/r segments; beside a finer mesh it
+// is the whole difference.
 double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other) {
     double ratio = usual_ratio(scene);
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
-        if (r != 1) ratio = fmax(fmax(ratio, r < 1), 0.75 / fabs(r * r - 1));
+        if (r != 1) ratio = fmax(ratio, r < 1 ? 1 : 0.75 / (r * r - 1));
     }
     return ratio;
 }

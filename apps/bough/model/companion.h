@@ -38,7 +38,7 @@ bough_scene *bough_coarser_scene_beside(bough_arena *arena, const bough_simulati
 
 // The error of the scene's solution relative to its difference to that of such a copy: a quarter, between an
 // order of 2 and of 3; half with a coupling, whose error the copy does not have; more if meshes differ by
-// less than a factor of two; at least 1 if the mesh is finer or the coupling explicit.
+// less than a factor of two; 1 if the mesh is finer or the coupling explicit.
 double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other);
 
 // The same for the part of the air: loads held constant, an error of order 1, err by twice the difference to

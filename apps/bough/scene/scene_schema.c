@@ -130,7 +130,7 @@ static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
      CHOICES([BOUGH_SCENE_COMPANION] = "companion", [BOUGH_SCENE_NO_ESTIMATE] = "none"),
      .help = "companion: a second solution beside the run that is coarser (half the segments, twice the "
              "steps, half the sampling rate of the air) gives the whole error of every channel, for a third to half "
-             "of the run's cost; a rod of up to eight segments, or up to three times those of such a rod beside it, has half as many more there, at least eight, which mostly costs 0.3 to 1 of the run"},
+             "of the run's cost; a rod of up to eight segments, or up to three times those of such a rod beside it, has twice as many there, at least eight, which mostly costs 0.4 to 1.2 of the run"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
      .help = "also gives the separate errors of mesh, air and time, by further runs after the run"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",

@@ -22,7 +22,7 @@ static coarser coarser_of(bough_arena *arena, const char *path, const char *firs
 
 // The errors of a rod of 5 segments can hide those of one of 15.
 TEST(beside_a_finer_rod_few_segments_get_more) {
-    static const int cases[][4] = {{5, 15, 8, 23}, {5, 16, 8, 8}, {9, 15, 5, 8}};
+    static const int cases[][4] = {{5, 15, 10, 30}, {5, 16, 10, 8}, {9, 15, 5, 8}};
     for (int k = 0; k < 3; k++) {
         check_arena(arena);
         char text[900];
@@ -91,7 +91,7 @@ TEST(the_error_is_a_part_of_the_difference) {
         {runup, {SEGMENTS(20), MONOLITHIC}, 10, 0.25},
         {runup, {SEGMENTS(16), MONOLITHIC}, 10, 0.75 / (2.56 - 1)},
         {runup, {SEGMENTS(9), MONOLITHIC}, 5, 0.75 / (81.0 / 25 - 1)},
-        {runup, {SEGMENTS(8), "simulation.coupling={scheme: ramp}"}, 12, 0.75 / (1 - 4.0 / 9)},
+        {runup, {SEGMENTS(8), "simulation.coupling={scheme: ramp}"}, 16, 1},
         {runup, {SEGMENTS(1), "simulation.coupling={scheme: ramp}"}, 8, 1},
         {runup, {"bodies[3-5].fidelity=modal", MONOLITHIC}, 48, 1},
         {runup, {"bodies[3-5].fidelity=segmented-modal", "bodies[3-5].modal={pieces: 5}"}, 50, 1},
@@ -126,7 +126,7 @@ TEST(the_error_is_a_part_of_the_difference) {
 TEST(short_pulses_have_a_finer_companion) {
     static const char *const loads[] = {PULSE("40 us", "50 us", "0"), PULSE("11.5 ms", "11.6 ms", "0"),
                                         PULSE("12 ms", "12.1 ms", "0"), PULSE("40 us", "50 us", "2")};
-    static const int segments[] = {30, 30, 10, 10};
+    static const int segments[] = {40, 40, 10, 10};
     check_arena(arena);
     for (int k = 0; k < 4; k++) {
         coarser x = coarser_of(arena, spin_up, loads[k], NULL);
@@ -197,7 +197,7 @@ TEST(a_tight_tolerance_becomes_much_larger) {
 // Dense matrices limit Radau IIA to 400 states, which a finer mesh may pass.
 TEST(a_finer_mesh_may_be_too_large_for_radau) {
     static const char bar[] = "tests/data/scenes/struck-bar.yaml";
-    static const int segments[] = {16, 24}, solver[] = {BOUGH_RADAU5, BOUGH_AUTOMATIC};
+    static const int segments[] = {12, 24}, solver[] = {BOUGH_RADAU5, BOUGH_AUTOMATIC};
     check_arena(arena);
     for (int k = 0; k < 2; k++) {
         char set[40];
