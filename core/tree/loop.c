@@ -482,8 +482,8 @@ static bough_status assemble_positions(bough_tree *tree, bough_tree_data *d, dou
     }
 }
 
-// Speeds that are zero follow those that are given, by the joints alone where that is enough, or, in the
-// last attempts, all change.
+// Changes speeds by the least squares that close the rates: in the first attempt those of joints that are
+// zero, then those of the rods' ends too, at last the given ones.
 static bool follow(bough_tree *tree, bough_tree_data *d, int loose) {
     double *v = tree->initial + tree->n_q, *change = d->loops->speed;
     if (!least_squares(tree, d, loose, true, change)) return false;
