@@ -148,10 +148,11 @@ modes() {
     near ../stdout '^ *1 ' 2 0.7349 0.001
     missing turning/shapes.csv
     expect 0 modes "$turbine" --set 'modes={count: 3, of: scene, at: undeformed}' --out campbell \
-        --sweep 'gravity=[0, 0, -9], [0, 0, 0]' --sweep 'simulation.output={channels: ["Tip*"]}, null'
+        --sweep 'gravity=[0, 0, -9], [0, 0, 0]' --sweep 'simulation.output={channels: ["Tip*"]}, null' \
+        --sweep 'title="calm, light", b'
     [ "$(wc -l <campbell/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
     has campbell/campbell.csv '^1,"\[0, 0, -9\]","{channels: \[""Tip\*""\]}",'
-    has campbell/campbell.csv '^2,"\[0, 0, 0\]",null,'
+    has campbell/campbell.csv '^2,"\[0, 0, 0\]",null,b,'
     has campbell/campbell.svg '^</svg>'
     rm -r campbell
     expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole

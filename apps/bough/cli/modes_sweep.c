@@ -48,14 +48,16 @@ typedef struct tracks {
 
 // -- operating points -----------------------------------------------------------------------------
 
-// The next part of a list, up to a comma outside brackets; NULL at its end.
+// The next part of a list, up to a comma outside brackets and quotes; NULL at its end.
 static const char *next_value(bough_arena *arena, const char **rest) {
     const char *from = *rest + strspn(*rest, " ");
     int depth = 0;
+    char quote = '\0'; // the one that is open
     size_t n = 0;
     if (*from == '\0') return NULL;
-    for (; from[n] != '\0' && (depth > 0 || from[n] != ','); n++) {
-        depth += (from[n] == '[' || from[n] == '{') - (from[n] == ']' || from[n] == '}');
+    for (; from[n] != '\0' && (quote || depth > 0 || from[n] != ','); n++) {
+        if (quote ? from[n] == quote : from[n] == '"' || from[n] == '\'') quote = quote ? '\0' : from[n];
+        if (!quote) depth += (from[n] == '[' || from[n] == '{') - (from[n] == ']' || from[n] == '}');
     }
     *rest = from + n + (from[n] == ',');
     return bough_arena_print(arena, "%.*s", (int)n, from);
