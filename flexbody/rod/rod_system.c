@@ -324,11 +324,32 @@ static void project(void *self, const double *state, double *x) {
 
 // -- life -------------------------------------------------------------------------------------------
 
-static void take_memory(bough_rod_body *b, bough_arena *arena) {
-    size_t states = (size_t)BOUGH_ROD_STATES * b->model->n;
-    bough_arena_each(arena, states, &b->initial, &b->scale);
-    bough_rod_loads_init(&b->loads, arena, b->model);
-    bough_rod_scratch_init(&b->scratch, arena, b->model);
+// A displacement d of the end and its rotation by phi, spread over a straight rod without loads, at the part
+// t of its chord.
+static void spread(bough_vec3 chord, double t, bough_vec3 *d, bough_vec3 *phi) {
+    double square = bough_dot(chord, chord), bubble = t * (1 - t);
+    bough_vec3 turned = bough_cross(*phi, chord);
+    bough_vec3 side = bough_sub(*d, bough_scale(bough_dot(chord, *d) / square, chord));
+    bough_vec3 bent = bough_sub(bough_scale(2 * t - 1, side), bough_scale(t, turned));
+    bough_vec3 slope = bough_cross(chord, bough_sub(bough_scale(2, *d), turned));
+    *d = bough_add(bough_scale(t, *d), bough_scale(bubble, bent));
+    *phi = bough_add(bough_scale(t, *phi), bough_scale(3 * bubble / square, slope));
+}
+
+// In a closed loop the end may be off its undeformed place: the whole rod yields, not its last segment alone.
+static void follow_end(const bough_rod_model *m, const double *end, double *state) {
+    int n = m->n, last = m->n_segment;
+    bough_vec3 chord = m->position0[last], off = bough_sub(bough_v3_load(end + 6), chord);
+    bough_quaternion p = {end[9], end[10], end[11], end[12]},
+                     back = bough_quaternion_conjugate(m->rotation0[last]);
+    for (int i = 0; i < n; i++) {
+        bough_vec3 d = off, phi = bough_quaternion_logarithm(bough_quaternion_product(p, back));
+        spread(chord, m->span[i + 1] / m->span[last], &d, &phi);
+        bough_vec3 x = bough_add(m->position0[i + 1], d);
+        bough_quaternion r = bough_quaternion_product(bough_quaternion_exponential(phi), m->rotation0[i + 1]);
+        const double values[] = {x.x, x.y, x.z, r.w, r.x, r.y, r.z};
+        for (int c = 0; c < BOUGH_ROD_U; c++) state[c * n + i] = values[c];
+    }
 }
 
 bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, const double *input) {
@@ -336,10 +357,12 @@ bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model 
     static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1, 1, 1, 1, 0.1, 0.1, 0.1};
     bough_rod_body *b = bough_arena_take(arena, sizeof *b);
     b->model = model;
-    take_memory(b, arena);
+    bough_arena_each(arena, (size_t)BOUGH_ROD_STATES * model->n, &b->initial, &b->scale);
+    bough_rod_loads_init(&b->loads, arena, model);
+    bough_rod_scratch_init(&b->scratch, arena, model);
     bough_rod_rest_state(model, input, b->initial);
-    int n = model->n;
-    for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
+    if (bough_rod_carries(model)) follow_end(model, input + BOUGH_ROD_INPUTS, b->initial);
+    for (int k = 0; k < BOUGH_ROD_STATES * model->n; k++) b->scale[k] = scale[k / model->n];
     return b;
 }
 

@@ -8,8 +8,8 @@
 
 typedef struct bough_rod_body bough_rod_body;
 
-// Builds the body in the arena. It starts at rest relative to its frame, which moves with `input` (the
-// first 9); tolerances are relative to 1 m, 0.1 rad, 1 m/s, 0.1 rad/s.
+// Builds the body in the arena. It starts at rest relative to its frame, which moves with `input`; one that
+// carries bodies bends to where its end is. Tolerances are relative to 1 m, 0.1 rad, 1 m/s, 0.1 rad/s.
 bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, const double *input);
 
 // The contract's view; valid as long as the arena.

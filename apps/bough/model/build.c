@@ -114,7 +114,14 @@ static bough_status build_rods(bough_builder *b) {
         const bough_scene_solver *micro = bough_scene_micro(b->scene, beam->body);
         bough_integrator_options options = solver_options(micro);
         bough_system system = {0};
-        BOUGH_TRY(bough_build_beam(b->arena, beam, motion + BOUGH_PORT_OUTPUTS * beam->port, &system));
+        double input[BOUGH_ROD_MOST_INPUTS] = {0};
+        memcpy(input, motion + BOUGH_PORT_OUTPUTS * beam->port, BOUGH_PORT_OUTPUTS * sizeof *input);
+        if (beam->end >= 0) {
+            const double *end = motion + BOUGH_PORT_OUTPUTS * s->tree->n_ports;
+            memcpy(input + BOUGH_PORT_OUTPUTS, end + BOUGH_END_OUTPUTS * beam->end,
+                   BOUGH_END_OUTPUTS * sizeof *input);
+        }
+        BOUGH_TRY(bough_build_beam(b->arena, beam, input, &system));
         bough_status status = bough_member_create(b->arena, &system, 0, &options, &s->rod[beam->port]);
         BOUGH_TRY(blame_solver(micro, "micro.solver", status));
     }
