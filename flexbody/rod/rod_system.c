@@ -324,27 +324,29 @@ static void project(void *self, const double *state, double *x) {
 
 // -- life -------------------------------------------------------------------------------------------
 
-// A displacement d of the end and its rotation by phi, spread over a straight rod without loads, at the part
-// t of its chord.
-static void spread(bough_vec3 chord, double t, bough_vec3 *d, bough_vec3 *phi) {
-    double square = bough_dot(chord, chord), bubble = t * (1 - t);
-    bough_vec3 turned = bough_cross(*phi, chord);
-    bough_vec3 side = bough_sub(*d, bough_scale(bough_dot(chord, *d) / square, chord));
+// A displacement d of the end and its rotation by phi, spread over a straight rod of this length without
+// loads, at the part t of it. The axis is zero for a ring, which has no direction from end to end.
+static void spread(bough_vec3 axis, double length, double t, bough_vec3 *d, bough_vec3 *phi) {
+    double bubble = t * (1 - t);
+    bough_vec3 turned = bough_scale(length, bough_cross(*phi, axis));
+    bough_vec3 side = bough_sub(*d, bough_scale(bough_dot(axis, *d), axis));
     bough_vec3 bent = bough_sub(bough_scale(2 * t - 1, side), bough_scale(t, turned));
-    bough_vec3 slope = bough_cross(chord, bough_sub(bough_scale(2, *d), turned));
+    bough_vec3 slope = bough_cross(axis, bough_sub(bough_scale(2, *d), turned));
     *d = bough_add(bough_scale(t, *d), bough_scale(bubble, bent));
-    *phi = bough_add(bough_scale(t, *phi), bough_scale(3 * bubble / square, slope));
+    *phi = bough_add(bough_scale(t, *phi), bough_scale(3 * bubble / length, slope));
 }
 
 // In a closed loop the end may be off its undeformed place: the whole rod yields, not its last segment alone.
 static void follow_end(const bough_rod_model *m, const double *end, double *state) {
     int n = m->n, last = m->n_segment;
     bough_vec3 chord = m->position0[last], off = bough_sub(bough_v3_load(end + 6), chord);
+    double length = m->span[last], apart = bough_norm(chord);
+    bough_vec3 axis = bough_scale(apart > 1e-6 * length ? 1 / apart : 0, chord);
     bough_quaternion p = {end[9], end[10], end[11], end[12]},
                      back = bough_quaternion_conjugate(m->rotation0[last]);
     for (int i = 0; i < n; i++) {
         bough_vec3 d = off, phi = bough_quaternion_logarithm(bough_quaternion_product(p, back));
-        spread(chord, m->span[i + 1] / m->span[last], &d, &phi);
+        spread(axis, length, m->span[i + 1] / length, &d, &phi);
         bough_vec3 x = bough_add(m->position0[i + 1], d);
         bough_quaternion r = bough_quaternion_product(bough_quaternion_exponential(phi), m->rotation0[i + 1]);
         const double values[] = {x.x, x.y, x.z, r.w, r.x, r.y, r.z};
