@@ -190,6 +190,15 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }
 
+bool bough_dense_divide(bough_arena *arena, int n, int n_right, const double *a, double *b) {
+    size_t size = (size_t)n;
+    double *factor = bough_arena_copy(arena, a, size * size * sizeof *a);
+    int *pivot = bough_arena_take(arena, size * sizeof *pivot);
+    if (!bough_dense_factor(n, factor, pivot)) return false;
+    bough_dense_solve(n, n_right, factor, pivot, b);
+    return true;
+}
+
 enum { FEW = 8 }; // columns of a product
 
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {

@@ -27,6 +27,9 @@ bool bough_band_solve(int n, int width, double *a, int *pivot, double *b);
 // Solves a x = b in place with those factors: b (n × n_right, column-major).
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
+// b ← a⁻¹ b, likewise; a stays as it is. False when a is singular or not finite.
+bool bough_dense_divide(bough_arena *arena, int n, int n_right, const double *a, double *b);
+
 // c ← factor a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
 // c (m × n).
 typedef struct bough_product {

@@ -24,8 +24,9 @@ void bough_modes_harmonic(int n, int h, const double *real, const double *imagin
 }
 
 // theory (75). The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
-void bough_modes_rate(const bough_modes_def *def, double *rate) {
+double *bough_modes_rate(bough_arena *arena, const bough_modes_def *def) {
     int n = def->n_part;
+    double *rate = bough_arena_doubles(arena, (size_t)(n * n) + 1);
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
             double sum = 0;
@@ -35,20 +36,14 @@ void bough_modes_rate(const bough_modes_def *def, double *rate) {
             rate[k * n + l] = def->spin / n * sum;
         }
     }
+    return rate;
 }
 
-// moved = −γ S x
-static void apply_spin(const modes *m, const double *x, double *moved) {
-    const bough_modes_def *def = m->def;
-    int n = def->n_part;
-    memset(moved, 0, (size_t)m->whole->assembly->n_state * sizeof *moved);
-    for (int k = 0; k < n; k++) {
-        for (int l = 0; l < n; l++) {
-            double factor = -m->rate[k * n + l] / def->point;
-            // from part l to part k, row by row
-            const int *to = def->row + k * def->n_row, *from = def->row + l * def->n_row;
-            for (int j = 0; j < def->n_row; j++) moved[to[j]] += factor * x[from[j]];
-        }
+void bough_modes_add_rate(const bough_modes_def *def, const double *rate, int n, const int *row,
+                          double factor, const double *x, double *sum) {
+    for (int k = 0; k < def->n_part * def->n_part; k++) {
+        const int *to = row + k / def->n_part * n, *from = row + k % def->n_part * n;
+        for (int j = 0; j < n; j++) sum[to[j]] += factor * rate[k] * x[from[j]];
     }
 }
 
@@ -71,7 +66,9 @@ static void apply_once(modes *m, const double *z, double *image) {
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
     for (int k = 0; k < TERMS; k++) {
-        apply_spin(m, m->term, m->moved);
+        memset(m->moved, 0, (size_t)n * sizeof *m->moved);
+        bough_modes_add_rate(m->def, m->rate, m->def->n_row, m->def->row, -1 / m->def->point, m->term,
+                             m->moved);
         memcpy(m->term, m->moved, (size_t)n * sizeof *m->term);
         bough_whole_solve(m->whole, m->term);
         bough_whole_project(m->whole, m->def->state, m->term);
@@ -89,9 +86,9 @@ static void apply(void *self, int n, const double *z, double *image) {
 
 static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     const bough_assembly *a = m->whole->assembly;
-    size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
+    size_t n = (size_t)a->n_state;
     bough_arena_each(arena, n, &m->term, &m->moved, &op->weight);
-    m->rate = bough_arena_doubles(arena, parts * parts + 1);
+    m->rate = bough_modes_rate(arena, m->def);
     bough_assembly_scales(a, op->weight);
     // states in units of their scales
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
@@ -107,7 +104,6 @@ bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const boug
                                .self = &m,
                                .apply = apply};
     take(arena, &m, &op);
-    if (def->spin != 0) bough_modes_rate(def, m.rate);
     // factors of I − γJ, then Arnoldi's method on their solutions
     bough_status status = bough_whole_setup(whole, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);

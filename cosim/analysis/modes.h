@@ -27,8 +27,12 @@ typedef struct bough_modes_def {
 // imaginary part.
 void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double harmonic[2]);
 
-// S of the parts, rate (n_part × n_part), row-major.
-void bough_modes_rate(const bough_modes_def *def, double *rate);
+// S of the parts (n_part × n_part), row-major; 0 where nothing rotates.
+double *bough_modes_rate(bough_arena *arena, const bough_modes_def *def);
+
+// sum += factor S x in the n corresponding rows of the parts, row (n_part × n).
+void bough_modes_add_rate(const bough_modes_def *def, const double *rate, int n, const int *row,
+                          double factor, const double *x, double *sum);
 
 // Finds pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
 // spin is too fast for the point: it should be several times the largest h Ω.

@@ -18,12 +18,6 @@ typedef struct work {
     bough_air_inverse *inverse; // T⁻¹ P
 } work;
 
-static void take(bough_arena *arena, work *w) {
-    size_t parts = (size_t)w->system->def->n_part;
-    w->rate = bough_arena_doubles(arena, parts * parts + 1);
-    if (w->system->def->spin != 0) bough_modes_rate(w->system->def, w->rate);
-}
-
 // The states of the air that change: those of a model that is not in use are at rest.
 static void find_air(bough_arena *arena, work *w) {
     const bough_air_tangent *air = w->system->air;
@@ -126,14 +120,11 @@ static void collect(const work *w, int n_right, const bough_eigen_pair *right, i
 static bool orthogonalise(bough_arena *arena, const work *w, const double *of_left, reduced *x) {
     size_t n = (size_t)w->n, r = (size_t)x->r;
     double *small = bough_arena_doubles(arena, r * r);
-    int *pivot = bough_arena_take(arena, r * sizeof *pivot);
     bough_dense_product((bough_product){x->r, x->r, w->n, true, .factor = 1}, of_left, x->right, small);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < r; i++) x->left[j * r + i] = of_left[i * n + j];
     }
-    if (!bough_dense_factor(x->r, small, pivot)) return false;
-    bough_dense_solve(x->r, w->n, small, pivot, x->left);
-    return true;
+    return bough_dense_divide(arena, x->r, w->n, small, x->left);
 }
 
 // The first block: L (J − S + A) U
@@ -223,16 +214,10 @@ static bool reduce(bough_arena *arena, work *w, int n_right, const bough_eigen_p
 
 static bool find_vectors(bough_arena *arena, reduced *x) {
     size_t all = (size_t)x->all;
-    double *factor = bough_arena_doubles(arena, all * all);
-    int *pivot = bough_arena_take(arena, all * sizeof *pivot);
-    if (!bough_dense_eigen(x->all, x->matrix, x->value, x->vector,
-                           bough_arena_doubles(arena, BOUGH_EIGEN_WORK(all))))
-        return false;
-    memcpy(factor, x->vector, all * all * sizeof *factor);
+    double *scratch = bough_arena_doubles(arena, BOUGH_EIGEN_WORK(all));
     for (size_t i = 0; i < all; i++) x->inverse[i * all + i] = 1;
-    if (!bough_dense_factor(x->all, factor, pivot)) return false;
-    bough_dense_solve(x->all, x->all, factor, pivot, x->inverse);
-    return true;
+    return bough_dense_eigen(x->all, x->matrix, x->value, x->vector, scratch) &&
+           bough_dense_divide(arena, x->all, x->all, x->vector, x->inverse);
 }
 
 // Participation of the members in mode j (and j + 1 of a pair), Σ |left × right| over their states relative
@@ -342,15 +327,15 @@ static int count_parts(int count, const listed *mode) {
     return columns;
 }
 
-// A vector of members and the air's states that change (2 × (n + m)) as one of all (2 × (n + n_air)).
-static double *spread(const work *w, const double *from) {
-    size_t n = (size_t)w->n, m = (size_t)w->m, all = n + (size_t)w->system->air->n_air;
-    double *to = bough_arena_doubles(w->kept, 2 * all);
-    for (size_t part = 0; part < 2; part++) {
-        memcpy(to + part * all, from + part * (n + m), n * sizeof *to);
-        for (size_t i = 0; i < m; i++) to[part * all + n + (size_t)w->air[i]] = from[part * (n + m) + n + i];
+// A vector of members and the air's states that change (n + m each) as one of all (2 × (n + n_air)).
+static double *spread(const work *w, const double *real, const double *imaginary) {
+    size_t n = (size_t)w->n, all = n + (size_t)w->system->air->n_air;
+    double *both = bough_arena_doubles(w->kept, 2 * all), *to = both;
+    for (const double *from = real; to < both + 2 * all; from = imaginary, to += all) {
+        memcpy(to, from, n * sizeof *to);
+        for (size_t i = 0; i < (size_t)w->m; i++) to[n + (size_t)w->air[i]] = from[n + i];
     }
-    return to;
+    return both;
 }
 
 // Modes of the whole system, after one step of inverse iteration, with their residuals.
@@ -377,7 +362,7 @@ static void expand(bough_arena *arena, work *w, const reduced *x, int count, con
         memcpy(pair[k].shape_real, to, n * sizeof *to);
         memcpy(pair[k].shape_imag, to + length, n * sizeof *to);
         pair[k].residual = bough_eigen_residual(&op, pair[k].real, pair[k].imaginary, from, to);
-        if (vector) vector[k].right = spread(w, to);
+        if (vector) vector[k].right = spread(w, to, to + length);
         column += (size_t)parts;
     }
 }
@@ -424,7 +409,7 @@ static void find_left(bough_arena *arena, work *w, const reduced *x, int count, 
     for (int k = 0; k < count; k++) {
         int parts = parts_of(&mode[k].pair);
         collect_parts(w, x, &y, column, parts, both);
-        vector[k].left = spread(w, both);
+        vector[k].left = spread(w, both, both + n + (size_t)w->m);
         column += (size_t)parts;
     }
 }
@@ -495,16 +480,7 @@ static bough_status follow_memory(bough_arena *arena, work *w, bough_eigen_pair 
     return bough_ok();
 }
 
-// A pair's vector with all states of the air, at rest.
-static double *with_air(const work *w, const bough_eigen_pair *pair) {
-    size_t n = (size_t)w->n, all = n + (size_t)w->system->air->n_air;
-    double *both = bough_arena_doubles(w->kept, 2 * all);
-    memcpy(both, pair->shape_real, n * sizeof *both);
-    memcpy(both + all, pair->shape_imag, n * sizeof *both);
-    return both;
-}
-
-// Vectors of modes without memory of the air.
+// Vectors of modes without memory of the air, whose states are at rest.
 static bough_status find_partners(bough_arena *arena, work *w, const bough_eigen_pair *pair,
                                   const bough_eigen_count *count, bough_mode_vectors *vector) {
     bough_eigen_count n_left = {.wanted = count->wanted};
@@ -512,8 +488,8 @@ static bough_status find_partners(bough_arena *arena, work *w, const bough_eigen
     BOUGH_TRY(find_pairs(arena, w, true, false, true, left, &n_left));
     for (int k = 0; k < count->found; k++) {
         const bough_eigen_pair *other = partner(&pair[k], n_left.found, left);
-        vector[k].right = with_air(w, &pair[k]);
-        vector[k].left = other ? with_air(w, other) : NULL;
+        vector[k].right = spread(w, pair[k].shape_real, pair[k].shape_imag);
+        vector[k].left = other ? spread(w, other->shape_real, other->shape_imag) : NULL;
     }
     return bough_ok();
 }
@@ -522,7 +498,7 @@ static bough_status find(bough_arena *arena, work *w, bough_eigen_pair *pair, bo
                          bough_mode_vectors *vector, int *unpaired) {
     const bough_modes_def *def = w->system->def;
     find_air(arena, w);
-    take(arena, w);
+    w->rate = bough_modes_rate(arena, def);
     bough_status status =
         bough_whole_setup(w->system->whole, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);

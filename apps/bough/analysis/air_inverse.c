@@ -94,12 +94,9 @@ static void follow_blade(bough_arena *arena, const bough_air_inverse *x, int bla
 static bool set_rows(bough_arena *arena, const bough_air_inverse *x, double *z) {
     size_t n = (size_t)x->n, n_other = (size_t)x->n_other, all = (size_t)(x->n_part * x->r);
     const int *row = x->system->def->row;
-    int *pivot = bough_arena_take(arena, (n_other + 1) * sizeof *pivot);
     double *y = bough_arena_doubles(arena, all * n_other + 1);
     for (int k = 0; k < x->n_part; k++) follow_blade(arena, x, k, y + (size_t)(k * x->r) * n_other);
-    double *factor = bough_arena_copy(arena, x->others, square(x->n_other) * sizeof *factor);
-    if (!bough_dense_factor(x->n_other, factor, pivot)) return false;
-    bough_dense_solve(x->n_other, (int)all, factor, pivot, y);
+    if (!bough_dense_divide(arena, x->n_other, (int)all, x->others, y)) return false;
     for (size_t k = 0; k < all * n_other; k++) z[k % n_other * n + (size_t)row[k / n_other]] = y[k];
     bough_blade_inverse_gather(x->blades, x->n_other, z, x->from);
     return true;
@@ -110,7 +107,7 @@ static void set_among(bough_arena *arena, const bough_air_inverse *x, double *am
     const bough_modes_def *def = x->system->def;
     size_t n = (size_t)x->n, n_other = (size_t)x->n_other;
     int *place = bough_arena_take(arena, n * sizeof *place);
-    double *rate = bough_arena_doubles(arena, square(def->n_part) + 1);
+    const double *rate = bough_modes_rate(arena, def);
     for (size_t j = 0; j < n_other; j++) {
         const double *column = bough_air_tangent_entry(x->system->air, 0, (size_t)x->other[j]);
         place[x->other[j]] = (int)j;
@@ -118,7 +115,6 @@ static void set_among(bough_arena *arena, const bough_air_inverse *x, double *am
         if (x->other[j] < x->system->simulation->tree->n_q) among[j * n_other + j] += going_back;
     }
     if (x->blades || def->spin == 0) return;
-    bough_modes_rate(def, rate);
     for (int k = 0; k < def->n_part * def->n_part; k++) {
         const int *to = def->row + k / def->n_part * def->n_row,
                   *from = def->row + k % def->n_part * def->n_row;
@@ -168,7 +164,7 @@ static bool set_blades(bough_arena *arena, const bough_air_inverse *x, double *z
 }
 
 static bool set(bough_arena *arena, const bough_air_inverse *x) {
-    int n = x->n_other, *pivot = bough_arena_take(arena, ((size_t)n + 1) * sizeof *pivot);
+    int n = x->n_other;
     double *among, *k, *z = bough_arena_doubles(arena, (size_t)x->n * (x->blades ? (size_t)n + 1 : 1));
     bough_arena_each(arena, square(n) + 1, &among, &k);
     set_columns(x, z);
@@ -176,9 +172,7 @@ static bool set(bough_arena *arena, const bough_air_inverse *x) {
     if (x->blades && !set_blades(arena, x, z, among, k)) return false;
     bough_dense_product((bough_product){n, n, n, false, .factor = 1, .keep = 1}, among, x->others, k);
     for (size_t i = 0; i < square(n); i += (size_t)n + 1) k[i] += 1, x->inverse[i] = 1;
-    if (!bough_dense_factor(n, k, pivot)) return false;
-    bough_dense_solve(n, n, k, pivot, x->inverse);
-    return true;
+    return bough_dense_divide(arena, n, n, k, x->inverse);
 }
 
 // -- test -----------------------------------------------------------------------------------------
@@ -186,16 +180,11 @@ static bool set(bough_arena *arena, const bough_air_inverse *x) {
 // z − γ (S − A) y − going_back y: the right-hand side of which the image y of z must be the solution.
 static void find_force(bough_arena *arena, const bough_air_inverse *x, const double *y, double *z) {
     const bough_modes_def *def = x->system->def;
-    double *rate = bough_arena_doubles(arena, square(def->n_part));
+    const double *rate = bough_modes_rate(arena, def);
     bough_dense_product(
         (bough_product){x->n, 1, x->n, false, .factor = x->gamma, .keep = 1, .rows_a = x->system->air->all},
         x->system->air->matrix, y, z);
-    if (def->spin != 0) bough_modes_rate(def, rate);
-    for (int k = 0; k < def->n_part * def->n_part; k++) {
-        const int *to = def->row + k / def->n_part * def->n_row,
-                  *from = def->row + k % def->n_part * def->n_row;
-        for (int j = 0; j < def->n_row; j++) z[to[j]] -= x->gamma * rate[k] * y[from[j]];
-    }
+    bough_modes_add_rate(def, rate, def->n_row, def->row, -x->gamma, y, z);
     for (int i = 0; i < x->system->simulation->tree->n_q; i++) z[i] -= going_back * y[i];
 }
 

@@ -36,8 +36,6 @@ typedef struct alone {
     double *vertex;  // each vertex' own block of all rows, transposed (n_vertex × 13 × 13)
 } alone;
 
-static size_t square(int n) { return (size_t)n * (size_t)n; }
-
 // First part of harmonic m among the rows of `harmonic`, and how many it has.
 static int first_of(int m) { return m == 0 ? 0 : 2 * m - 1; }
 static int parts_of(const bough_blade_inverse *x, int m) { return m == 0 || 2 * m == x->n_part ? 1 : 2; }
@@ -207,8 +205,7 @@ static alone find_alone(bough_arena *arena, const bough_blade_inverse *x) {
 static void sum_harmonics(bough_arena *arena, const bough_blade_inverse *x) {
     const bough_modes_def *def = x->system->def;
     size_t r = (size_t)x->r, d = (size_t)x->d;
-    double *rate = bough_arena_doubles(arena, square(x->n_part));
-    if (def->spin != 0) bough_modes_rate(def, rate);
+    const double *rate = bough_modes_rate(arena, def);
     for (int k = 0; k < x->n_part * x->n_part; k++) {
         int part = k / x->n_part, blade = k % x->n_part, m = (part + 1) / 2;
         double angle = 2 * BOUGH_PI * m * blade / x->n_part;
@@ -229,7 +226,6 @@ static bool divide_harmonic(bough_arena *arena, size_t parts, size_t n, const do
                             size_t columns, double *z) {
     size_t q = parts * n;
     double *t = bough_arena_doubles(arena, q * q), *joined = bough_arena_doubles(arena, q * columns);
-    int *pivot = bough_arena_take(arena, q * sizeof *pivot);
     // of cosine and sine together: a, and what the sine does to the cosine, which to the sine is the opposite
     for (size_t p = 0; p < parts; p++) {
         const double sign = p == 1 ? -1 : 1;
@@ -242,8 +238,7 @@ static bool divide_harmonic(bough_arena *arena, size_t parts, size_t n, const do
         for (size_t k = 0; k < columns; k++)
             for (size_t i = 0; i < n; i++) joined[k * q + p * n + i] = sign * z[(p * columns + k) * n + i];
     }
-    if (!bough_dense_factor((int)q, t, pivot)) return false;
-    bough_dense_solve((int)q, (int)columns, t, pivot, joined);
+    if (!bough_dense_divide(arena, (int)q, (int)columns, t, joined)) return false;
     for (size_t p = 0; p < parts; p++) {
         const double sign = p == 1 ? -1 : 1;
         for (size_t k = 0; k < columns; k++)

@@ -167,15 +167,6 @@ typedef struct reduced {
     double *image, *left;  // Wᵀ V X, X⁻¹ (q × q)
 } reduced;
 
-// b (q × q) ← a⁻¹ b
-static bool divide(bough_arena *arena, int q, const double *a, double *b) {
-    double *factor = bough_arena_copy(arena, a, (size_t)q * (size_t)q * sizeof *factor);
-    int *pivot = bough_arena_take(arena, (size_t)q * sizeof *pivot);
-    if (!bough_dense_factor(q, factor, pivot)) return false;
-    bough_dense_solve(q, q, factor, pivot, b);
-    return true;
-}
-
 static bool reduce(bough_arena *arena, const work *w, const side *right, const side *left, reduced *x) {
     int q = x->q = 2 * w->q;
     size_t size = (size_t)q * (size_t)q + 1;
@@ -189,12 +180,12 @@ static bool reduce(bough_arena *arena, const work *w, const side *right, const s
     bough_dense_product(members, left->members, right->members, x->length);
     bough_dense_product(air, left->air, right->air, x->length);
     for (int i = 0; i < q; i++) x->left[i * q + i] = 1;
-    if (!divide(arena, q, x->length, x->matrix) ||
+    if (!bough_dense_divide(arena, q, q, x->length, x->matrix) ||
         !bough_dense_eigen(q, x->matrix, x->value, x->right,
                            bough_arena_doubles(arena, BOUGH_EIGEN_WORK((size_t)q) + 1)))
         return false;
     bough_dense_product((bough_product){q, q, q, false, .factor = 1}, x->length, x->right, x->image);
-    return divide(arena, q, x->right, x->left);
+    return bough_dense_divide(arena, q, q, x->right, x->left);
 }
 
 // Σ of a block of a (q rows) with weights 1 and ±i along its rows, 1 and i along its columns.
@@ -231,8 +222,7 @@ static bough_status find(bough_arena *arena, work *w, double complex *there) {
     const bough_modes_def *def = w->system->def;
     double *scale = bough_arena_doubles(arena, (size_t)w->n);
     reduced x = {0};
-    w->rate = bough_arena_doubles(arena, (size_t)(def->n_part * def->n_part) + 1);
-    if (def->spin != 0) bough_modes_rate(def, w->rate);
+    w->rate = bough_modes_rate(arena, def);
     bough_assembly_scales(w->system->whole->assembly, scale);
     BOUGH_TRY(bough_whole_setup(w->system->whole, def->time, def->state, def->input, w->gamma));
     w->inverse = bough_air_inverse_create(arena, w->system);

@@ -44,25 +44,15 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     int n_air = x->in_air ? x->m / s->scene->turbine.n_blade : 0;
     x->n_all = def->n_row + n_air;
     x->row = bough_air_tangent_rows(arena, s, &x->point.group, n_air);
-    size_t all = (size_t)(x->n + x->m) + 1, parts = (size_t)def->n_part;
+    size_t all = (size_t)(x->n + x->m) + 1;
     bough_arena_each(arena, all, &x->moved, &x->side[0], &x->side[1], &x->turned, &x->follows);
     x->scale = bough_arena_doubles(arena, all);
     bough_assembly_scales(s->master->assembly, x->scale);
-    x->rate = bough_arena_doubles(arena, parts * parts + 1);
-    if (def->spin != 0) bough_modes_rate(def, x->rate);
+    x->rate = bough_modes_rate(arena, def);
     return bough_ok();
 }
 
 static int row_of(const linear *x, int blade, int j) { return x->row[blade * x->n_all + j]; }
-
-// −S y
-static void subtract_spin(const linear *x, const double *y, double *image) {
-    const bough_modes_def *def = &x->point.def;
-    for (int k = 0; k < def->n_part; k++)
-        for (int l = 0; l < def->n_part; l++)
-            for (int j = 0; j < x->n_all; j++)
-                image[row_of(x, k, j)] -= x->rate[k * def->n_part + l] * y[row_of(x, l, j)];
-}
 
 // Whether y has entries outside the blades and their air.
 static bool moves_others(const linear *x, const double *y) {
@@ -122,7 +112,7 @@ static bough_status multiply_members(linear *x, double size, const double *y, do
         BOUGH_TRY(bough_whole_rate(p->whole, p->def.time, x->moved, x->side[side]));
     }
     for (int i = 0; i < x->n; i++) image[i] = (x->side[1][i] - x->side[0][i]) / (2 * size);
-    if (p->def.spin != 0) subtract_spin(x, y, image);
+    bough_modes_add_rate(&p->def, x->rate, x->n_all, x->row, -1, y, image);
     return bough_ok();
 }
 

@@ -52,11 +52,10 @@ static void open_scene(bough_arena *arena, scene *c) {
 static double miss(bough_arena *arena, const scene *c, const double *z, const double *y) {
     const bough_modes_def *def = &c->x.def;
     size_t n = (size_t)c->air.n;
-    double *force = bough_arena_copy(arena, z, n * sizeof *z), *scale = bough_arena_doubles(arena, n),
-           rate[9];
+    double *force = bough_arena_copy(arena, z, n * sizeof *z), *scale = bough_arena_doubles(arena, n);
+    const double *rate = bough_modes_rate(arena, def);
     double most = 0, size = 0;
     bough_assembly_scales(c->x.whole->assembly, scale);
-    bough_modes_rate(def, rate);
     for (size_t j = 0; j < n; j++) {
         for (size_t i = 0; i < n; i++)
             force[i] += *bough_air_tangent_entry(&c->air, i, j) * y[j] / def->point;
