@@ -7,12 +7,6 @@ bough_induction_options bough_induction_options_default(void) {
     return (bough_induction_options){BOUGH_HIGH_THRUST_SMOOTH, true, true, true, true, true, false};
 }
 
-int bough_induction_solve(const bough_induction_options *options, const bough_elements *elements,
-                          double *axial, double *tangential, double *loss) {
-    return BOUGH_OF_LEVEL(bough_induction_solve, bough_level_chosen())(options, elements, axial, tangential,
-                                                                       loss);
-}
-
 // -- dynamic inflow -------------------------------------------------------------------------------
 
 static const double k = 0.6;

@@ -25,6 +25,7 @@ static inline bough_induction induction_at(const bough_induction_options *option
         for (int k = 0; k < ROWS; k++) r[k][i] = own[k];
     }
     const bough_elements copies = {N, polar, r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], e->skew};
-    int evaluations = bough_induction_solve(options, &copies, axial, tangential, loss);
+    int evaluations = BOUGH_OF_LEVEL(bough_induction_solve, bough_level_chosen())(options, &copies, axial,
+                                                                                  tangential, loss);
     return (bough_induction){axial[0], tangential[0], loss[0], evaluations};
 }

@@ -261,7 +261,7 @@ TEST(lanes_give_what_one_gives) {
         }
         bough_elements all = {N,        polar,    value[0], value[1], value[2], value[3],
                               value[4], value[5], value[6], value[7], value[8], skew};
-        bough_induction_solve(&options, &all, axial, tangential, loss);
+        BOUGH_OF_LEVEL(bough_induction_solve, bough_level_chosen())(&options, &all, axial, tangential, loss);
         for (int i = 0; i < N; i++) {
             bough_induction one = induction_at(&options, e + i);
             check_near(axial[i], one.axial, 1e-8, 1e-9);
