@@ -80,8 +80,7 @@ bough_interface *bough_interface_create(bough_arena *arena, const bough_assembly
     bough_arena_each(arena, n * n, &k->loop, &k->matrix);
     k->eigen = bough_arena_doubles(arena, n * (n + 2) + BOUGH_EIGEN_WORK(n));
     k->pivot = bough_arena_take(arena, n * sizeof(int));
-    k->coordinate = bough_arena_doubles(arena, n);
-    k->sum = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &k->coordinate, &k->sum);
     k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
     k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);

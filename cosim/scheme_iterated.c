@@ -81,11 +81,8 @@ static void take(iteration *it, const bough_assembly *a, bough_arena *arena) {
     it->group = bough_arena_take(arena, n * sizeof *it->group);
     it->is_feedback = bough_arena_take(arena, n * sizeof *it->is_feedback);
     it->n_prescribed = n_node * n;
-    it->prescribed = bough_arena_doubles(arena, it->n_prescribed);
-    it->best = bough_arena_doubles(arena, it->n_prescribed);
+    bough_arena_each(arena, n_node * n, &it->prescribed, &it->best, &it->guess, &it->image);
     bough_arena_each(arena, n, &it->size, &it->scale, &it->change);
-    it->guess = bough_arena_doubles(arena, n_node * n);
-    it->image = bough_arena_doubles(arena, n_node * n);
     for (int i = 0; i < a->n_member; i++) {
         bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
         bough_member_snapshot(a->member[i], &measure);

@@ -39,13 +39,7 @@ void bough_step_control_restore(bough_step_control *s, bough_coupling *c) {
 }
 
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot) {
-    const bough_step_control own = *s; // its memory
-    bough_snapshot_take(snapshot, s, sizeof *s);
-    s->copy = own.copy;
-    s->size = own.size;
-    s->curve = own.curve;
-    s->obtained = own.obtained;
-    s->square = own.square;
+    bough_snapshot_take(snapshot, s, offsetof(bough_step_control, size)); // decisions come before memory
     bough_snapshot_doubles(snapshot, s->size, s->curve.n);
 }
 

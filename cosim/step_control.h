@@ -24,8 +24,8 @@ typedef struct bough_step_control {
     double shortest; // step accepted [s]
     int n_point;     // synchronisation points before the step with no jump between
     // by each step
-    char *copy;   // of the coupling at the start of the step
     double *size; // (n_input) of a vector's first: its largest norm so far
+    char *copy;   // of the coupling at the start of the step
     // scratch
     bough_signal curve;        // (n_input) through these points and the step's end
     double *obtained, *square; // (n_input)

@@ -61,6 +61,13 @@ static inline double bough_scalar_product(int n, const double *x, const double *
     return sum;
 }
 
+// The largest |x|/scale.
+static inline double bough_largest(int n, const double *x, const double *scale) {
+    double largest = 0;
+    for (int i = 0; i < n; i++) largest = fmax(largest, fabs(x[i]) / scale[i]);
+    return largest;
+}
+
 static inline double bough_clamp(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
 }

@@ -47,8 +47,7 @@ static bool derivative(void *self, double t, const double *state, const double *
     (void)t;
     linear_member *s = self;
     const bough_system *r = s->real;
-    double largest = 0;
-    for (int k = 0; k < r->n_state; k++) largest = fmax(largest, fabs(state[k]) / r->scale[k]);
+    double largest = bough_largest(r->n_state, state, r->scale);
     // J y
     memset(rate, 0, (size_t)r->n_state * sizeof(double));
     if (largest > 0) {
@@ -162,8 +161,7 @@ void bough_linear_member_create(bough_arena *arena, const bough_member *real, co
     linear_member *s = bough_arena_take(arena, sizeof *s);
     *s = (linear_member){.real = r, .member = linear, .sub_step = sub_step, .time = real->time};
     bough_arena_each(arena, n, &s->at, &s->plus, &s->minus);
-    s->input_at = bough_arena_doubles(arena, n_input);
-    s->seen = bough_arena_doubles(arena, n_input);
+    bough_arena_each(arena, n_input, &s->input_at, &s->seen);
     s->column = bough_arena_doubles(arena, n_input * n);
     s->own = factors(s, arena);
     *linear = (bough_member){.system = *r,

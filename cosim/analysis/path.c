@@ -52,12 +52,6 @@ static double product(const path *p, const double *a, double a_factor, const dou
     return sum / p->n + a_factor * b_factor;
 }
 
-static double largest(const path *p, const double *x) {
-    double size = 0;
-    for (int k = 0; k < p->n; k++) size = fmax(size, fabs(x[k]) / p->scale[k]);
-    return size;
-}
-
 // Moves a place by a change of state and load factor; false: by too large a rotation.
 static bool add(path *p, place *at, const double *change, double factor) {
     if (!(p->def->move(p->def->self, at->state, change, p->moved) < most_turn)) return false;
@@ -81,13 +75,13 @@ static bool linearise(path *p, const place *at) {
     status = bough_whole_setup(p->whole, time, at->state, p->whole->input, p->gamma);
     if (!bough_is_ok(&status)) return false;
     bough_whole_solve(p->whole, p->load);
-    return isfinite(largest(p, p->load));
+    return isfinite(bough_largest(p->n, p->load, p->scale));
 }
 
 // The factors' γ, and the factors and p->load of a place with it.
 static bool choose_gamma(path *p, const place *at) {
     for (p->gamma = newton; linearise(p, at); p->gamma *= longer) {
-        double change = 0, size = largest(p, p->load);
+        double change = 0, size = bough_largest(p->n, p->load, p->scale);
         for (int k = 0; k < p->n; k++) change = fmax(change, fabs(p->load[k] - p->change[k]) / p->scale[k]);
         bool same = change <= shift * size;
         memcpy(p->change, p->load, (size_t)p->n * sizeof *p->load);
@@ -117,7 +111,7 @@ static int correct(path *p, const double *tangent, bool fixed, place *at) {
         double factor = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
         for (int k = 0; k < p->n; k++) p->change[k] += factor * p->load[k];
         // applied, until it is small or only rounding is left
-        double size = fmax(largest(p, p->change), fabs(factor));
+        double size = fmax(bough_largest(p->n, p->change, p->scale), fabs(factor));
         if (!isfinite(size) || !add(p, at, p->change, factor)) return 0;
         if (size < p->def->tolerance || (size < rounding && !(size < 0.5 * before))) return i;
         if (i > 2 && !(size < before)) return 0;

@@ -103,11 +103,10 @@ static void choose_weights(map *m, const double *z) {
     const bough_assembly *a = &m->assembly;
     double *weight = m->arnoldi.weight, sum = 0;
     // states in units of their scales
-    for (int i = 0, k = 0; i < a->n_member; i++) {
-        for (int j = 0; j < a->member[i]->system.n_state; j++, k++) {
-            weight[k] = 1 / (a->member[i]->system.scale[j] * a->member[i]->system.scale[j]);
-            sum += z[k] * z[k] * weight[k];
-        }
+    bough_assembly_scales(a, weight);
+    for (int k = 0; k < a->n_state; k++) {
+        weight[k] = 1 / (weight[k] * weight[k]);
+        sum += z[k] * z[k] * weight[k];
     }
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i], last = a->input_offset[i + 1];
@@ -129,11 +128,10 @@ static bough_status start(map *m) {
     const bough_assembly *a = &m->assembly;
     double *x = m->pair, *image = m->pair + m->n;
     unsigned seed = 1;
-    for (int i = 0, k = 0; i < a->n_member; i++) {
-        for (int j = 0; j < a->member[i]->system.n_state; j++, k++) {
-            seed = seed * 1664525u + 1013904223u;
-            x[k] = a->member[i]->system.scale[j] * ((double)seed / 2147483648.0 - 1);
-        }
+    bough_assembly_scales(a, x);
+    for (int k = 0; k < a->n_state; k++) {
+        seed = seed * 1664525u + 1013904223u;
+        x[k] *= (double)seed / 2147483648.0 - 1;
     }
     for (int k = 0; k < WARM_UP; k++) {
         BOUGH_TRY(apply(m, m->repeat, x, image));

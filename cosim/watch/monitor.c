@@ -284,10 +284,9 @@ bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_c
         report.defect_max = fmax(report.defect_max, g->defect_max / g->magnitude);
         report.defect_rms = fmax(report.defect_rms, rms / g->magnitude);
     }
-    for (int k = 0; k < c->assembly->n_pair; k++) {
-        report.energy_residual += fabs(m->account[k].total.residual);
-        report.energy_exchanged += m->account[k].total.exchanged;
-    }
+    bough_pair_energy all = sum_energy(m, c->assembly->n_pair, false);
+    report.energy_residual = all.residual;
+    report.energy_exchanged = all.exchanged;
     return report;
 }
 

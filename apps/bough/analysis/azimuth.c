@@ -204,8 +204,7 @@ static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors 
     for (size_t part = 0; part < 2; part++) {
         const double *right = v->right + part * all;
         double complex unit = part == 0 ? 1 : imaginary;
-        double largest = 0;
-        for (size_t i = 0; i < all; i++) largest = fmax(largest, fabs(right[i]) / scale[i]);
+        double largest = bough_largest((int)all, right, scale);
         if (largest == 0) continue;
         BOUGH_TRY(bough_azimuth_product_follow(p, difference / largest, true, right, image));
         for (size_t i = 0; i < all; i++) {

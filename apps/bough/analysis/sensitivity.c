@@ -97,8 +97,7 @@ static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double si
 
 // The factor of y in a difference; 0: y is 0.
 static double size_of(const linear *x, const double *y) {
-    double largest = 0;
-    for (int i = 0; i < x->n; i++) largest = fmax(largest, fabs(y[i]) / x->scale[i]);
+    double largest = bough_largest(x->n, y, x->scale);
     for (int i = x->n; i < x->n + x->m; i++) largest = fmax(largest, fabs(y[i]));
     return largest > 0 ? difference / largest : 0;
 }
