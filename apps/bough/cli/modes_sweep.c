@@ -17,11 +17,10 @@ static const double rounding = 1e-6; // smaller damping ratios are rounding
 
 // A mode at an operating point.
 typedef struct sweep_mode {
-    int point, line; // a line connects equal modes of neighbouring points
-    double frequency, damped, damping;
-    double damping_change; // over the azimuths
-    const char *body, *shape, *pattern;
-    const char *name; // of all three
+    int point, line;     // a line connects equal modes of neighbouring points
+    bough_scene_mode is; // without its shares and shape
+    const char *body, *shape;
+    const char *name; // of both and of the pattern
 } sweep_mode;
 
 typedef struct sweep {
@@ -92,8 +91,7 @@ static bough_status read_points(bough_arena *arena, const bough_texts *sweeps, s
         list++;
         for (int i = 0; i < n; i++) s->value[k * n + i] = next_value(arena, &list);
     }
-    s->x = bough_arena_doubles(arena, (size_t)s->n_point);
-    s->speed = bough_arena_doubles(arena, (size_t)s->n_point);
+    bough_arena_each(arena, (size_t)s->n_point, &s->x, &s->speed);
     return bough_ok();
 }
 
@@ -198,15 +196,11 @@ static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulat
         sweep_mode *to = &s->mode[s->n_mode++];
         *to = (sweep_mode){.point = point,
                            .line = now->line[k],
-                           .frequency = m->frequency,
-                           .damped = m->damped_frequency,
-                           .damping = m->damping,
-                           .damping_change = m->damping_change,
+                           .is = *m,
                            .body = bough_arena_string(keep, bough_modes_body(sim, m)),
-                           .shape = bough_modes_shape(sim, m),
-                           .pattern = bough_pattern_names[m->pattern]};
-        to->name =
-            bough_arena_print(keep, "%s %s%s%s", to->body, to->shape, to->pattern[0] ? " " : "", to->pattern);
+                           .shape = bough_modes_shape(sim, m)};
+        to->name = bough_arena_print(keep, "%s %s%s%s", to->body, to->shape, m->pattern ? " " : "",
+                                     bough_pattern_names[m->pattern]);
     }
 }
 
@@ -264,10 +258,10 @@ static void print_point(const sweep *s, int point, int first) {
     for (int k = first; k < s->n_mode; k++) {
         const sweep_mode *m = &s->mode[k];
         printf("%4d", m->line + 1);
-        bough_modes_print_value(m->frequency, m->damped, m->damping);
-        printf("%-12s %-8s %s%s%s\n", m->body, m->shape, m->pattern,
-               m->damping < -rounding ? "  unstable" : "",
-               m->damping_change >= fabs(m->damping)
+        bough_modes_print_value(m->is.frequency, m->is.damped_frequency, m->is.damping);
+        printf("%-12s %-8s %s%s%s\n", m->body, m->shape, bough_pattern_names[m->is.pattern],
+               m->is.damping < -rounding ? "  unstable" : "",
+               m->is.damping_change >= fabs(m->is.damping)
                    ? "  damping changes with the azimuth by as much as its own value"
                    : "");
     }
@@ -302,8 +296,9 @@ static void write_table(const void *self, FILE *file) {
         fprintf(file, "%d", m->point + 1);
         for (int k = 0; k < s->n_key; k++) bough_csv_next(file, s->value[k * s->n_point + m->point]);
         fprintf(file, ",%.10g,%d,%s", s->speed[m->point], m->line + 1, s->named[m->line]->name);
-        bough_modes_write_value(file, m->frequency, m->damped, m->damping);
-        fprintf(file, ",%.2g,%s,%s,%s\n", m->damping_change, m->body, m->shape, m->pattern);
+        bough_modes_write_value(file, m->is.frequency, m->is.damped_frequency, m->is.damping);
+        fprintf(file, ",%.2g,%s,%s,%s\n", m->is.damping_change, m->body, m->shape,
+                bough_pattern_names[m->is.pattern]);
     }
 }
 
@@ -344,14 +339,16 @@ static void add_line(diagram *d, int line) {
     const sweep *s = d->sweep;
     const sweep_mode *last = NULL;
     for (int i = 0; i < s->n_mode; i++)
-        if (s->mode[i].line == line && !(d->damping && s->mode[i].damped == 0)) last = &s->mode[i];
+        if (s->mode[i].line == line && !(d->damping && s->mode[i].is.damped_frequency == 0))
+            last = &s->mode[i];
     bough_chart_add_line(&d->chart, (bough_chart_line){.colour = line, .joined = true, .marked = true});
     for (const sweep_mode *m = s->mode; last && m <= last; m++) {
-        if (m->line != line || (d->damping && m->damped == 0)) continue;
+        if (m->line != line || (d->damping && m->is.damped_frequency == 0)) continue;
         const char *label = bough_arena_print(d->chart.arena, "%d %s", line + 1, s->named[line]->name);
-        bough_chart_add(&d->chart, (bough_chart_point){.x = x_of(d, m->point),
-                                                       .y = d->damping ? 100 * m->damping : m->frequency,
-                                                       .label = m == last ? label : NULL});
+        bough_chart_add(&d->chart,
+                        (bough_chart_point){.x = x_of(d, m->point),
+                                            .y = d->damping ? 100 * m->is.damping : m->is.frequency,
+                                            .label = m == last ? label : NULL});
     }
 }
 
@@ -360,7 +357,7 @@ static bough_status draw(bough_arena *arena, const sweep *s, const char *folder)
     double frequency = 0;
     d.chart.right = 190;
     for (int i = 1; i < s->n_solved; i++) d.by_speed = d.by_speed || s->speed[i] != s->speed[0];
-    for (int i = 0; i < s->n_mode; i++) frequency = fmax(frequency, s->mode[i].frequency);
+    for (int i = 0; i < s->n_mode; i++) frequency = fmax(frequency, s->mode[i].is.frequency);
     bough_chart_add_panel(&d.chart, "frequency [Hz]", NULL, false, false);
     add_multiples(&d, frequency);
     for (int line = 0; line < s->n_line; line++) add_line(&d, line);
@@ -378,26 +375,24 @@ enum { MOST_TRIALS = 40 };
 static const double accurate = 1e-5; // of the boundary, relative to the first key's values
 
 // Growth of a motion [1/s].
-static double growth_of(const sweep_mode *m) {
-    return fabs(m->damping) > rounding ? -2 * BOUGH_PI * m->frequency * m->damping : 0;
-}
+static double growth_of(const bough_scene_mode *m) { return fabs(m->damping) > rounding ? m->growth : 0; }
 
 // Whether growth of the mode ends the sweep: oscillations do, and divergences unless the rotor is free, whose
 // speed may grow under constant torque.
-static bool counts(bool free, double damped) { return damped > 0 || !free; }
+static bool counts(bool free, const bough_scene_mode *m) { return m->damped_frequency > 0 || !free; }
 
 static const sweep_mode *most_growing(const sweep *s, int point) {
     const sweep_mode *most = NULL;
     for (int i = 0; i < s->n_mode; i++) {
         const sweep_mode *m = &s->mode[i];
-        bool taken = m->point == point && counts(s->free, m->damped);
-        if (taken && (!most || growth_of(m) > growth_of(most))) most = m;
+        bool taken = m->point == point && counts(s->free, &m->is);
+        if (taken && (!most || growth_of(&m->is) > growth_of(&most->is))) most = m;
     }
     return most;
 }
 
 // Beyond rounding.
-static bool grows(const sweep_mode *m) { return m && m->damping < -rounding; }
+static bool grows(const sweep_mode *m) { return m && m->is.damping < -rounding; }
 
 static bool begins_number(const char *text) {
     return strchr("+-.0123456789", *text) != NULL && *text != '\0';
@@ -461,8 +456,8 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
     if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, scene->modes.count, &v);
     for (int k = 0; bough_is_ok(&status) && k < v.found; k++) {
         const bough_scene_mode *m = &v.mode[k];
-        double rate = fabs(m->damping) > rounding ? m->growth : 0;
-        if (!counts(s->free, m->damped_frequency) || rate <= to->rate) continue;
+        double rate = growth_of(m);
+        if (!counts(s->free, m) || rate <= to->rate) continue;
         to->rate = rate;
         to->frequency = m->damped_frequency;
         to->name = bough_arena_print(keep, "%s %s", bough_modes_body(sim, m), bough_modes_shape(sim, m));
@@ -519,15 +514,17 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
                s->key[0], s->value[last]);
         return bough_ok();
     }
-    growth at = {.frequency = m->damped, .name = bough_arena_print(arena, "%s %s", m->body, m->shape)};
-    double low = m->damped > 0 && before ? growth_of(before) : 0, high = growth_of(m), error;
+    growth at = {.frequency = m->is.damped_frequency,
+                 .name = bough_arena_print(arena, "%s %s", m->body, m->shape)};
+    double low = m->is.damped_frequency > 0 && before ? growth_of(&before->is) : 0, high = growth_of(&m->is),
+           error;
     BOUGH_TRY(find_boundary(arena, options, s, last - 1, low, high, false, &at));
     BOUGH_TRY(find_error(arena, options, s, last - 1, low, high, &at, &error));
     bool number = begins_number(s->value[last]);
     error *= fabs(s->x[last] - s->x[last - 1]);
     const char *value = between(arena, s->value[last - 1], s->value[last], at.part);
     printf("unstable from %s=%s on, mesh +- %.2g%s: ", s->key[0], value, error, number ? "" : " of the step");
-    if ((m->damped > 0) == (at.frequency > 0)) printf("line %d, ", m->line + 1);
+    if ((m->is.damped_frequency > 0) == (at.frequency > 0)) printf("line %d, ", m->line + 1);
     if (at.frequency > 0)
         printf("%.6g Hz, %s\n", at.frequency, at.name);
     else
