@@ -23,7 +23,7 @@ typedef struct work {
     bough_channels channels;
     double time;
     const double *about;        // (n) states of the members
-    double *state;              // (n)
+    double *state, *scale;      // (n)
     double *rate[2], *value[2]; // (n), (n_output) on either side
     int n_input;
     input *input; // (n_input)
@@ -171,51 +171,28 @@ static bough_status evaluate(work *w, const double *state, int side) {
     return bough_ok();
 }
 
-static void put_rates(const work *w, double size, double *column) {
-    for (int k = 0; k < w->whole->assembly->n_state; k++)
-        column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
-}
-
-// The jump of a periodic angle is removed.
-static void put_outputs(const work *w, int n_output, double size, double *column) {
-    for (int k = 0; k < n_output; k++) {
-        double change = w->value[1][k] - w->value[0][k];
-        double turn = w->channels.channel[k].turn;
-        if (turn > 0) change = remainder(change, turn);
-        column[k] = change / (2 * size);
-    }
-}
-
-static bough_status by_states(work *w, bough_state_space *to) {
+// Columns of state k, or of input k, by the difference of changes to both sides. The jump of a periodic angle
+// is removed.
+static bough_status differentiate(work *w, bool by_input, int k, double size, bough_state_space *to) {
     const bough_assembly *a = w->whole->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->state_offset[i]; j < a->state_offset[i + 1]; j++) {
-            double size = difference * a->member[i]->system.scale[j - a->state_offset[i]];
-            for (int side = 0; side < 2; side++) {
-                memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
-                w->state[j] += (2 * side - 1) * size;
-                BOUGH_TRY(evaluate(w, w->state, side));
-            }
-            put_rates(w, size, to->a + (size_t)j * (size_t)to->n);
-            put_outputs(w, to->n_output, size, to->c + (size_t)j * (size_t)to->n_output);
-        }
+    double *rate = (by_input ? to->b : to->a) + (size_t)k * (size_t)to->n;
+    double *value = (by_input ? to->d : to->c) + (size_t)k * (size_t)to->n_output;
+    for (int side = 0; side < 2; side++) {
+        double change = (2 * side - 1) * size;
+        memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
+        if (by_input)
+            set_input(w, k, change, w->state);
+        else
+            w->state[k] += change;
+        bough_status status = evaluate(w, w->state, side);
+        if (by_input) bough_equilibrium_set_state(w->s, a, w->time, w->about);
+        if (by_input) set_input(w, k, 0, w->state);
+        if (!bough_is_ok(&status)) return status;
     }
-    return bough_ok();
-}
-
-static bough_status by_inputs(work *w, bough_state_space *to) {
-    size_t n_state = (size_t)w->whole->assembly->n_state;
-    for (int k = 0; k < w->n_input; k++) {
-        for (int side = 0; side < 2; side++) {
-            memcpy(w->state, w->about, n_state * sizeof *w->state);
-            set_input(w, k, (2 * side - 1) * w->size[k], w->state);
-            bough_status status = evaluate(w, w->state, side);
-            bough_equilibrium_set_state(w->s, w->whole->assembly, w->time, w->about);
-            set_input(w, k, 0, w->state);
-            if (!bough_is_ok(&status)) return status;
-        }
-        put_rates(w, w->size[k], to->b + (size_t)k * (size_t)to->n);
-        put_outputs(w, to->n_output, w->size[k], to->d + (size_t)k * (size_t)to->n_output);
+    for (int i = 0; i < a->n_state; i++) rate[i] = (w->rate[1][i] - w->rate[0][i]) / (2 * size);
+    for (int i = 0; i < to->n_output; i++) {
+        double change = w->value[1][i] - w->value[0][i], turn = w->channels.channel[i].turn;
+        value[i] = (turn > 0 ? remainder(change, turn) : change) / (2 * size);
     }
     return bough_ok();
 }
@@ -239,7 +216,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
     double *about;
     w->input = bough_arena_take(arena, most * sizeof *w->input);
     w->size = bough_arena_doubles(arena, most);
-    bough_arena_each(arena, n + 1, &about, &w->state, &w->rate[0], &w->rate[1]);
+    bough_arena_each(arena, n + 1, &about, &w->state, &w->scale, &w->rate[0], &w->rate[1]);
     bough_arena_each(arena, (size_t)w->channels.count + 1, &w->value[0], &w->value[1]);
     bough_assembly_states(a, about);
     w->about = about;
@@ -274,8 +251,10 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
         BOUGH_TRY(bough_air_tangent_add(arena, &about, dynamic, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
-    BOUGH_TRY(by_states(&w, space));
-    BOUGH_TRY(by_inputs(&w, space));
+    bough_assembly_scales(w.whole->assembly, w.scale);
+    for (int k = 0; k < w.whole->assembly->n_state; k++)
+        BOUGH_TRY(differentiate(&w, false, k, difference * w.scale[k], space));
+    for (int k = 0; k < w.n_input; k++) BOUGH_TRY(differentiate(&w, true, k, w.size[k], space));
     BOUGH_TRY(evaluate(&w, w.about, 0));
     if (bough_air_follows(s->scene)) add_air(&w, &air, space);
     name_states(&w, space);
