@@ -56,8 +56,8 @@ typedef struct bough_rainflow {
     double slope[BOUGH_MOST_SLOPES];  // exponents m of the S-N curves [-]
     double damage[BOUGH_MOST_SLOPES]; // Σ n Sᵐ over the cycles n of range S
     double cycles;                    // n in all, in halves
+    double forced;                    // of them counted early to limit the memory
     bough_levels ranges;              // cycles by their range
-    double forced;                    // cycles that were counted early to limit the memory
     int direction;                    // of the last change: −1, 1, or 0 before the first
     double last;                      // the last sample, not necessarily a reversal
     int n;

@@ -111,11 +111,9 @@ static void move_levels(rows *r, const char *name, bough_levels *l) {
 }
 
 static void move_channel(rows *r, const bough_study *s, bough_channel_counts *c) {
-    double cycles[] = {c->rainflow.cycles, c->rainflow.forced};
     move(r, "statistics", sizeof c->statistics / sizeof(double), &c->statistics.n); // numbers only
     if (!s->is.weighted) return;
-    move(r, "cycles", 2, cycles);
-    c->rainflow.cycles = cycles[0], c->rainflow.forced = cycles[1];
+    move(r, "cycles", 2, &c->rainflow.cycles); // and those forced
     move(r, "damage", s->n_slope, c->rainflow.damage);
     move_levels(r, "ranges", &c->rainflow.ranges);
     move_levels(r, "levels", &c->levels);
@@ -124,9 +122,7 @@ static void move_channel(rows *r, const bough_study *s, bough_channel_counts *c)
 }
 
 static void move_error(rows *r, const bough_study *s, bough_load_error *e) {
-    double extremes[] = {e->least, e->most};
-    move(r, "error", 2, extremes);
-    e->least = extremes[0], e->most = extremes[1];
+    move(r, "error", 2, &e->least); // and the most
     move(r, "damage", s->n_slope, e->damage);
     move(r, "larger", s->n_slope, e->larger);
 }
