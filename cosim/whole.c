@@ -31,8 +31,8 @@ bough_status bough_whole_failure(const bough_whole *whole) {
     return failure_among(whole, 0, whole->assembly->n_member);
 }
 
-// work(whole, member) for the followers, the leaders or all, in parallel; the first failure among them: the
-// others keep that of an earlier call.
+// work(whole, member) for the followers, the leaders or all, in parallel. Gives the first failure among these
+// alone: the status of another member is that of an earlier call.
 static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole *whole, int member)) {
     const bough_assembly *a = whole->assembly;
     int first = whom == LEADERS ? a->n_follower : 0, last = whom == FOLLOWERS ? a->n_follower : a->n_member;
@@ -188,7 +188,7 @@ bough_status bough_whole_setup(bough_whole *whole, double t, const double *state
 
 // -- solution -------------------------------------------------------------------------------------
 
-// The coordinates are those of the solution before until a leader is solved: others may still respond to it.
+// Until a leader is solved, its coordinates are those of the last solution: others may still respond to them.
 void bough_whole_begin_solution(bough_whole *whole, double *x) { whole->x = x; }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held. A member whose states are

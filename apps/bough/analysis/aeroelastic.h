@@ -26,7 +26,7 @@ typedef struct bough_mode_vectors {
 // Finds up to `wanted` oscillations and growing motions in which the bodies take part.
 //   pair      by |λ|, room for count->wanted; their shapes (n_state), of any length and phase, in the arena
 //   count     how many there are; with memory of the air `converged` counts the vectors of the subspace,
-//             which are half as many again
+//             more than are wanted
 //   vectors   (count->wanted) of each pair; NULL: not wanted
 //   unpaired  eigenvectors that are not in the subspace, since their left or right partner did not converge
 // The cost is that of factoring a dense matrix of n_state rows (a tenth of it for equal blades). With memory

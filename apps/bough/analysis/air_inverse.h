@@ -45,8 +45,8 @@ typedef struct bough_air_inverse {
     double *argument, *image, *work, *force, *moved;
 } bough_air_inverse;
 
-// About the factors of system->whole. Where a test vector shows that the blades are not alike, or push each
-// other but through the other states and the air, they are others. NULL: singular.
+// About the factors of system->whole. The blades count among the other states where a test vector shows that
+// they differ, or that they act on each other by more than the other states and the air. NULL: singular.
 bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system);
 
 // Images of n vectors (n × n_state), one after the other, by the inverse or its transpose.

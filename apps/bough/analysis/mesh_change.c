@@ -18,12 +18,13 @@ typedef struct work {
     double *rate; // S (n_part × n_part)
 } work;
 
-// Right or left vectors as columns: as known, after one step and, normalised, what another step changes.
+// Right or left vectors as columns. `members`: first those after one step of inverse iteration, then their
+// change by a second one; each of length 1.
 typedef struct side {
     double *known;   // (n × q)
     double *members; // (n × 2 q)
     double *rate;    // (n × 2 q) right: rates of the members with these
-    double *air;     // (m × 2 q) what another step changes is 0
+    double *air;     // (m × 2 q) as known, then 0: a step leaves it as it is
 } side;
 
 // -- vectors on the other mesh --------------------------------------------------------------------

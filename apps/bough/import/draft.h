@@ -37,7 +37,7 @@ typedef struct bough_draft {
     double macro_step; // [s]; air and control are sampled as often
     const bough_import_options *options;
     int halvings;              // of the macro step, after those for the speed of the rotor
-    int setting;               // of mesh and integrator, which one of those that are tried
+    int setting;               // index among those of mesh and integrator that are tried
     bool by_air;               // the trial failed by the sampling of the air alone
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;

@@ -53,9 +53,9 @@ int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback)
 double bough_deck_switch_or(const bough_deck *deck, const char *names, double fallback); // True is 1
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
 
-// The path of a file that the deck names relative to itself: path whether it exists or not, file refused
-// unless it can be read; _at by the first word of a line. Where only capitals differ from an existing file,
-// its spelling is taken.
+// The path of a file that the deck names relative to itself; _at: named by the first word of a line. Where
+// only capitals differ from an existing file, its spelling is taken. bough_deck_path gives it even if there
+// is no such file; bough_deck_file refuses one that cannot be read.
 const char *bough_deck_path(const bough_deck *deck, const char *names);
 const char *bough_deck_path_at(const bough_deck *deck, int line);
 const char *bough_deck_file(const bough_deck *deck, const char *names);

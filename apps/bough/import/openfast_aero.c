@@ -54,7 +54,7 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     }
 }
 
-// Opens the airfoil file that the first line from *line on names which is no comment; *line moves past it.
+// Opens the airfoil file named on the first line from *line on that is no comment; *line moves past it.
 // `name`: of its polar in the scene. NULL: not opened, the draft's status says why.
 static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
