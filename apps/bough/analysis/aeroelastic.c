@@ -496,15 +496,9 @@ static bough_status find_partners(bough_arena *arena, work *w, const bough_eigen
 
 static bough_status find(bough_arena *arena, work *w, bough_eigen_pair *pair, bough_eigen_count *count,
                          bough_mode_vectors *vector, int *unpaired) {
-    const bough_modes_def *def = w->system->def;
     find_air(arena, w);
-    w->rate = bough_modes_rate(arena, def);
-    bough_status status =
-        bough_whole_setup(w->system->whole, def->time, def->state, def->input, 1 / def->point);
-    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
-    w->inverse = bough_air_inverse_create(arena, w->system);
-    if (w->inverse == NULL)
-        return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
+    w->rate = bough_modes_rate(arena, w->system->def);
+    BOUGH_TRY(bough_air_inverse_create(arena, w->system, &w->inverse));
     if (w->m > 0) return follow_memory(arena, w, pair, count, vector, unpaired);
     BOUGH_TRY(find_pairs(w->kept, w, false, false, false, pair, count));
     qsort(pair, (size_t)count->found, sizeof *pair, slower);

@@ -234,10 +234,16 @@ static bough_air_inverse *create(bough_arena *arena, const bough_aeroelastic *sy
     return good ? x : NULL;
 }
 
-bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system) {
+bough_status bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system,
+                                      bough_air_inverse **inverse) {
+    const bough_modes_def *def = system->def;
+    bough_status status = bough_whole_setup(system->whole, def->time, def->state, def->input, 1 / def->point);
+    if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     const bough_blade_inverse *blades = bough_blade_inverse_create(arena, system);
-    bough_air_inverse *x = blades ? create(arena, system, blades) : NULL;
-    return x ? x : create(arena, system, NULL);
+    *inverse = blades ? create(arena, system, blades) : NULL;
+    if (*inverse == NULL) *inverse = create(arena, system, NULL);
+    if (*inverse) return bough_ok();
+    return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
 }
 
 // The others' entries of vectors (n × n_state).

@@ -45,9 +45,10 @@ typedef struct bough_air_inverse {
     double *argument, *image, *work, *force, *moved;
 } bough_air_inverse;
 
-// About the factors of system->whole. The blades count among the other states where a test vector shows that
-// they differ, or that they act on each other by more than the other states and the air. NULL: singular.
-bough_air_inverse *bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system);
+// Factors system->whole, too. The blades count among the other states where a test vector shows that they
+// differ, or that they act on each other by more than the other states and the air. BOUGH_FAILED: singular.
+bough_status bough_air_inverse_create(bough_arena *arena, const bough_aeroelastic *system,
+                                      bough_air_inverse **inverse);
 
 // Images of n vectors (n × n_state), one after the other, by the inverse or its transpose.
 void bough_air_inverse_apply(bough_air_inverse *inverse, bool transposed, int n, const double *z,

@@ -220,15 +220,11 @@ static void choose(const work *w, const reduced *x, double complex *there) {
 }
 
 static bough_status find(bough_arena *arena, work *w, double complex *there) {
-    const bough_modes_def *def = w->system->def;
     double *scale = bough_arena_doubles(arena, (size_t)w->n);
     reduced x = {0};
-    w->rate = bough_modes_rate(arena, def);
+    w->rate = bough_modes_rate(arena, w->system->def);
     bough_assembly_scales(w->system->whole->assembly, scale);
-    BOUGH_TRY(bough_whole_setup(w->system->whole, def->time, def->state, def->input, w->gamma));
-    w->inverse = bough_air_inverse_create(arena, w->system);
-    if (w->inverse == NULL)
-        return bough_fail(BOUGH_FAILED, "the motion in the air is singular about %g /s", def->point);
+    BOUGH_TRY(bough_air_inverse_create(arena, w->system, &w->inverse));
     const side right = find_side(arena, w, scale, false), left = find_side(arena, w, scale, true);
     if (!reduce(arena, w, &right, &left, &x))
         return bough_fail(BOUGH_FAILED, "they do not follow from those of the scene");

@@ -28,9 +28,10 @@ typedef struct scene {
     bough_aeroelastic system;
 } scene;
 
-static void setup(const scene *c) {
-    const bough_modes_def *def = &c->x.def;
-    check_ok(bough_whole_setup(c->x.whole, def->time, def->state, def->input, 1 / def->point));
+static bough_air_inverse *create(bough_arena *arena, const scene *c) {
+    bough_air_inverse *inverse;
+    check_ok(bough_air_inverse_create(arena, &c->system, &inverse));
+    return inverse;
 }
 
 // About the initial state: an equilibrium is not needed.
@@ -45,7 +46,6 @@ static void open_scene(bough_arena *arena, scene *c) {
     c->system = (bough_aeroelastic){s, c->x.whole, &c->x.def, &c->x.group, &c->air};
     assert_int_equal(c->x.group.n, 3);
     assert_true(c->x.def.spin > 0);
-    setup(c);
 }
 
 // (I − γ(J − S + A))⁻¹ z = y is y = P (z − γ(S − A) y): the largest miss in units of the scales, relative.
@@ -81,7 +81,7 @@ TEST(the_blocks_solve_the_equations_of_the_whole_rotor) {
     check_arena(arena);
     scene c;
     open_scene(arena, &c);
-    bough_air_inverse *inverse = bough_air_inverse_create(arena, &c.system);
+    bough_air_inverse *inverse = create(arena, &c);
     assert_non_null(inverse->blades);
     size_t n = (size_t)c.air.n;
     double *z = bough_arena_doubles(arena, n * VECTORS), *y = bough_arena_doubles(arena, n * VECTORS);
@@ -99,7 +99,7 @@ TEST(the_blades_are_solved_with_their_kinematic_rows_eliminated) {
     check_arena(arena);
     scene c;
     open_scene(arena, &c);
-    const bough_blade_inverse *blades = bough_blade_inverse_create(arena, &c.system);
+    const bough_blade_inverse *blades = create(arena, &c)->blades;
     assert_non_null(blades);
     size_t n = (size_t)c.air.n, all = 3 * (size_t)c.x.group.n_row;
     double *scale, *z, *y, *force, *expected, *work = bough_arena_doubles(arena, 2 * all), miss = 0, size = 0;
@@ -145,7 +145,7 @@ TEST(the_transpose_has_the_same_products) {
     check_arena(arena);
     scene c;
     open_scene(arena, &c);
-    assert_true(transpose_miss(arena, &c, bough_air_inverse_create(arena, &c.system)) < 1e-12);
+    assert_true(transpose_miss(arena, &c, create(arena, &c)) < 1e-12);
 }
 
 // One blade bent, which the others are not: the blocks would be those of another rotor.
@@ -156,8 +156,7 @@ TEST(unlike_blades_are_solved_as_a_whole) {
     int n = c.x.group.n_row / BOUGH_BLADE_ROWS;
     double *state = c.x.state + c.x.group.first[1];
     for (int i = 0; i < n; i++) state[4 * n + i] += 0.05 * (i + 1); // a part of the quaternions
-    setup(&c);
-    bough_air_inverse *inverse = bough_air_inverse_create(arena, &c.system);
+    bough_air_inverse *inverse = create(arena, &c);
     assert_null(inverse->blades);
     double *z = bough_arena_doubles(arena, (size_t)c.air.n), *y = bough_arena_doubles(arena, (size_t)c.air.n);
     bough_assembly_scales(c.x.whole->assembly, z);
