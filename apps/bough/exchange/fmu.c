@@ -35,24 +35,21 @@ typedef struct state {
 
 // -- messages -------------------------------------------------------------------------------------
 
-__attribute__((format(printf, 3, 4))) static fmi3_status notify(const instance *x, fmi3_status status,
-                                                                const char *format, ...) {
+// Logs why a call fails.
+__attribute__((format(printf, 2, 3))) static fmi3_status fail(const instance *x, const char *format, ...) {
     char text[2400];
     BOUGH_PRINT(text, format);
-    const char *category = status == FMI3_OK        ? "logAll"
-                           : status == FMI3_WARNING ? "logStatusWarning"
-                                                    : "logStatusError";
-    if (x->log && x->logging) x->log(x->environment, status, category, text);
-    return status;
+    if (x->log && x->logging) x->log(x->environment, FMI3_ERROR, "logStatusError", text);
+    return FMI3_ERROR;
 }
 
 static fmi3_status answer(const instance *x, int code) {
     if (code == BOUGH_SESSION_OK) return FMI3_OK;
-    return notify(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+    return fail(x, "%s", bough_session_error(x->session));
 }
 
 static fmi3_status misplaced(const instance *x, const char *function) {
-    return notify(x, FMI3_ERROR, "%s: not allowed at this point", function);
+    return fail(x, "%s: not allowed at this point", function);
 }
 
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -123,13 +120,13 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     bool good = false;
     if (!resources || !token || !read_resources(x, resources, token)) {
         x->logging = true;
-        notify(x, FMI3_ERROR, "%s: the resources are not those of this FMU", name ? name : "");
+        fail(x, "%s: the resources are not those of this FMU", name ? name : "");
     } else if (event_mode) {
-        notify(x, FMI3_ERROR, "the FMU has no event mode");
+        fail(x, "the FMU has no event mode");
     } else {
         good = open_session(x);
         x->logging = x->logging || !good;
-        if (!good && x->session) notify(x, FMI3_ERROR, "%s", bough_session_error(x->session));
+        if (!good && x->session) fail(x, "%s", bough_session_error(x->session));
     }
     if (good) return x;
     fmi3FreeInstance(x);
@@ -185,9 +182,9 @@ fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, 
     (void)has_tolerance;
     (void)tolerance; // the scene's solvers have theirs
     if (x->mode != INSTANTIATED) return misplaced(x, "fmi3EnterInitializationMode");
-    if (!isfinite(start)) return notify(x, FMI3_ERROR, "a run cannot start at %g s", start);
+    if (!isfinite(start)) return fail(x, "a run cannot start at %g s", start);
     if (has_stop && !(stop > start && isfinite(stop)))
-        return notify(x, FMI3_ERROR, "a run from %g s cannot stop at %g s", start, stop);
+        return fail(x, "a run from %g s cannot stop at %g s", start, stop);
     x->mode = INITIALIZATION;
     x->start = start;
     if (!has_stop) return FMI3_OK;
@@ -227,11 +224,11 @@ fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, 
     size_t inputs = (size_t)bough_session_inputs(x->session);
     const double *channel = bough_session_values(x->session);
     size_t count = (size_t)bough_session_count(x->session);
-    if (n != n_value) return notify(x, FMI3_ERROR, "fmi3GetFloat64: %zu values of %zu", n_value, n);
+    if (n != n_value) return fail(x, "fmi3GetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         size_t at = reference[k];
         if (at > inputs + count || (at > inputs && !channel)) {
-            return notify(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
+            return fail(x, "fmi3GetFloat64: no value of reference %zu", at);
         }
         value[k] = at == 0        ? now(x)
                    : at <= inputs ? bough_session_input_value(x->session, (int)at - 1)
@@ -244,10 +241,10 @@ fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, 
                            size_t n_value) {
     const instance *x = self;
     if (x->mode == TERMINATED) return misplaced(x, "fmi3SetFloat64");
-    if (n != n_value) return notify(x, FMI3_ERROR, "fmi3SetFloat64: %zu values of %zu", n_value, n);
+    if (n != n_value) return fail(x, "fmi3SetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         if (reference[k] == 0 || reference[k] > (size_t)bough_session_inputs(x->session)) {
-            return notify(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
+            return fail(x, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
         }
         int code = bough_session_set(x->session, (int)reference[k] - 1, value[k]);
         if (code != BOUGH_SESSION_OK) return answer(x, code);
@@ -269,7 +266,7 @@ fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
     const instance *x = self;
     size_t size = bough_session_size(x->session);
     state *s = realloc(*to, sizeof *s + size);
-    if (!s) return notify(x, FMI3_ERROR, "out of memory");
+    if (!s) return fail(x, "out of memory");
     *to = s;
     *s = (state){size, x->start, x->mode};
     return answer(x, bough_session_save(x->session, s->copy));
@@ -279,7 +276,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
     instance *x = self;
     const state *s = from;
     if (!s || s->size != bough_session_size(x->session)) {
-        return notify(x, FMI3_ERROR, "fmi3SetFMUState: not a state of this FMU");
+        return fail(x, "fmi3SetFMUState: not a state of this FMU");
     }
     fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
     if (status == FMI3_OK) x->start = s->start, x->mode = s->mode;
@@ -304,16 +301,15 @@ static bool near(double a, double b, double step) {
 static fmi3_status check_step(const instance *x, double time, double step) {
     double macro_step = bough_session_macro_step(x->session), macro_steps = step / macro_step;
     if (!near(time, now(x), step) || !(step > 0))
-        return notify(x, FMI3_ERROR, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step,
-                      time, now(x));
+        return fail(x, "fmi3DoStep: a step of %.9g s from %.15g s, the FMU is at %.15g s", step, time,
+                    now(x));
     if (bough_session_time(x->session) + step > x->end + 1e-3 * macro_step)
-        return notify(x, FMI3_ERROR,
-                      "fmi3DoStep: %.9g s lead beyond the end at %.15g s, to be set by the stop time at the "
-                      "initialisation",
-                      step, x->start + x->end);
+        return fail(x,
+                    "fmi3DoStep: %.9g s lead beyond the end at %.15g s, to be set by the stop time at the "
+                    "initialisation",
+                    step, x->start + x->end);
     if (fabs(macro_steps - round(macro_steps)) > 1e-3 || macro_steps < 0.5)
-        return notify(x, FMI3_ERROR, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s",
-                      step, macro_step);
+        return fail(x, "fmi3DoStep: %.9g s is not a whole number of macro steps of %.9g s", step, macro_step);
     return FMI3_OK;
 }
 
