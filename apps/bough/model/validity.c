@@ -35,54 +35,43 @@ static const int least_states = 100;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence contains the value in its unit.
+// clang-format off
 static const struct {
     const char *name, *text;
 } limits[BOUGH_LIMITS] = {
-    [BOUGH_LIMIT_ATTACK] = {"angle_of_attack", "the polar's table has no rows at an angle of attack"
-                                               " of %.4g deg; they are joined across the gap"},
-    [BOUGH_LIMIT_MACH] = {"mach", "a section meets the air at %.4g m/s, more than half the speed of"
-                                  " sound: the polars hold for incompressible flow"},
-    [BOUGH_LIMIT_ROTOR_SPEED] = {"rotor_speed", "the rotor turns at %.4g rpm, more than twice the"
-                                                " rated speed"},
-    [BOUGH_LIMIT_TOWER] = {"tower_strike", "the blade is inside the tower, %.3g of its radius"
-                                           " from the axis: nothing stops it there"},
-    [BOUGH_LIMIT_SAMPLES] = {"air_samples", "the loads of the air miss its vibrations by %.2g of their size"
-                                            " between two samples: take a higher aero.rate, or fidelity rod"},
-    [BOUGH_LIMIT_TURN] =
-        {"segment_turn",
-         "the ends of a segment are rotated by %.3g deg to each other, more than 45 deg: take more segments"},
-    [BOUGH_LIMIT_SHAPES] =
-        {"modal_deflection",
-         "its shapes, which hold for small deflections, move a vertex by %.2g of its length:"
-         " take fidelity rod"},
+    [BOUGH_LIMIT_ATTACK] = {"angle_of_attack",
+        "the polar's table has no rows at an angle of attack of %.4g deg; they are joined across the gap"},
+    [BOUGH_LIMIT_MACH] = {"mach",
+        "a section meets the air at %.4g m/s, more than half the speed of sound: the polars hold for incompressible flow"},
+    [BOUGH_LIMIT_ROTOR_SPEED] = {"rotor_speed", "the rotor turns at %.4g rpm, more than twice the rated speed"},
+    [BOUGH_LIMIT_TOWER] = {"tower_strike",
+        "the blade is inside the tower, %.3g of its radius from the axis: nothing stops it there"},
+    [BOUGH_LIMIT_SAMPLES] = {"air_samples",
+        "the loads of the air miss its vibrations by %.2g of their size between two samples: take a higher aero.rate, or fidelity rod"},
+    [BOUGH_LIMIT_TURN] = {"segment_turn",
+        "the ends of a segment are rotated by %.3g deg to each other, more than 45 deg: take more segments"},
+    [BOUGH_LIMIT_SHAPES] = {"modal_deflection",
+        "its shapes, which hold for small deflections, move a vertex by %.2g of its length: take fidelity rod"},
     [BOUGH_LIMIT_SPACING] = {"blade_spacing",
-                             "the blades are not evenly spaced about its axis: between two of them are"
-                             " %.4g deg"},
+        "the blades are not evenly spaced about its axis: between two of them are %.4g deg"},
     [BOUGH_LIMIT_ACROSS] = {"wind_across",
-                            "its axis is across the wind, or faces away from it: the angle between"
-                            " them is %.4g deg"},
-    [BOUGH_LIMIT_MESH] =
-        {"one_segment",
-         "a rod of one segment bends by a third too little under a load along it, and its first"
-         " frequency is a tenth too high: take more segments than %g"},
-    [BOUGH_LIMIT_SINGULAR] =
-        {"singular_position",
-         "its closed loop is near a singular position, where its bodies can continue in two ways and the smallest difference decides; forces there may err by more than estimated; margin %.2g"},
-    [BOUGH_LIMIT_WIND] = {"wind_samples", "the wind changes by %.3g m/s and back between two samples of the"
-                                          " air, which do not see it: take a higher aero.rate"},
+        "its axis is across the wind, or faces away from it: the angle between them is %.4g deg"},
+    [BOUGH_LIMIT_MESH] = {"one_segment",
+        "a rod of one segment bends by a third too little under a load along it, and its first frequency is a tenth too high: take more segments than %g"},
+    [BOUGH_LIMIT_SINGULAR] = {"singular_position",
+        "its closed loop is near a singular position, where its bodies can continue in two ways and the smallest difference decides; forces there may err by more than estimated; margin %.2g"},
+    [BOUGH_LIMIT_WIND] = {"wind_samples",
+        "the wind changes by %.3g m/s and back between two samples of the air, which do not see it: take a higher aero.rate"},
     [BOUGH_LIMIT_ROTATION] = {"rotor_samples",
-                              "it turns by %.3g deg between two samples of the air, which miss what"
-                              " changes within a rotation: take a higher aero.rate"},
+        "it turns by %.3g deg between two samples of the air, which miss what changes within a rotation: take a higher aero.rate"},
     [BOUGH_LIMIT_START] = {"unstable_start",
-                           "the equilibrium from which the run starts is unstable: small disturbances, which"
-                           " the error estimate does not contain, grow at %.3g 1/s"},
-    [BOUGH_LIMIT_STEPS] =
-        {"solver_steps",
-         "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
-    [BOUGH_LIMIT_FAST] =
-        {"fast_vibrations",
-         "vibrations much faster than the macro step of %.4g s may be missing from the results or err by more than the estimate, above all in forces and velocities: damp them, or take a smaller rtol"},
+        "the equilibrium from which the run starts is unstable: small disturbances, which the error estimate does not contain, grow at %.3g 1/s"},
+    [BOUGH_LIMIT_STEPS] = {"solver_steps",
+        "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
+    [BOUGH_LIMIT_FAST] = {"fast_vibrations",
+        "vibrations much faster than the macro step of %.4g s may be missing from the results or err by more than the estimate, above all in forces and velocities: damp them, or take a smaller rtol"},
 };
+// clang-format on
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 
@@ -90,6 +79,11 @@ const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 static void pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
     if (v->limit[limit].passed) return;
     v->limit[limit] = (bough_passing){true, body, time, value};
+}
+
+// The same of a beam, now.
+static void pass_beam(bough_simulation *s, bough_limit limit, const bough_beam *beam, double value) {
+    pass(s->validity, limit, (int)(beam->body - s->scene->body), s->master->time, value);
 }
 
 static void check_air(bough_simulation *s) {
@@ -159,9 +153,7 @@ static void check_turns(bough_simulation *s) {
         const bough_rod_model *m = beam->mesh;
         if (turn_little(m, bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n)) continue;
         double turn = bough_simulation_bend(s, beam).angle;
-        if (turn > most_turn)
-            pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body), s->master->time,
-                 turn / BOUGH_DEGREE);
+        if (turn > most_turn) pass_beam(s, BOUGH_LIMIT_TURN, beam, turn / BOUGH_DEGREE);
     }
 }
 
@@ -184,8 +176,7 @@ static void check_shapes(bough_simulation *s) {
         for (int k = 0; k < m->n_piece; k++) {
             double deflection = deflection_of(&m->piece[k], s->rod[beam->port].state + m->offset[k]);
             if (deflection <= most_linear) continue;
-            pass(s->validity, BOUGH_LIMIT_SHAPES, (int)(beam->body - s->scene->body), s->master->time,
-                 deflection);
+            pass_beam(s, BOUGH_LIMIT_SHAPES, beam, deflection);
             break;
         }
     }
@@ -253,7 +244,7 @@ static void check_mesh(bough_simulation *s) {
         int parent = beam->body->joint.parent;
         bool in_row = beam->end >= 0 || (parent >= 0 && s->scene->body[parent].fidelity == BOUGH_SCENE_ROD);
         if (beam->port < 0 || in_row || beam->def.n_segment > 1) continue;
-        pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
+        pass_beam(s, BOUGH_LIMIT_MESH, beam, 1);
     }
 }
 
