@@ -98,12 +98,10 @@ static inline double *bough_observe_vector(bough_vec3 x, double unit, double *va
     return value + 3;
 }
 
-// Motion and section loads of rods at the places of the scene's sensors.
+// Adds motion and section loads of rods at the places of the scene's sensors; torque and power of the hub on
+// the drive train.
 void bough_observe_sections(bough_simulation *s, bough_channels *list);
-
-// Speed and azimuth of the hub; torque and power of the hub on the drive train.
-void bough_observe_turn(bough_simulation *s, bough_channels *list);
 void bough_observe_shaft(bough_simulation *s, bough_channels *list);
 
-// The wrench of the nacelle on the tower's top.
-void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
+// Samples speed and azimuth of the hub; the wrench of the nacelle on the tower's top. `self`: the simulation.
+bough_channel_sample bough_observe_turn, bough_observe_yaw_bearing;

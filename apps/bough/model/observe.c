@@ -412,7 +412,7 @@ static void add_control(bough_simulation *s, bough_channels *list) {
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
     const bough_scene *scene = s->scene;
     bool turbine = scene->turbine.node != NULL;
-    if (turbine) bough_observe_turn(s, channels);
+    if (turbine) bough_channel_group_add(channels, bough_observe_turn, s, BOUGH_CHANNELS_ROTOR);
     add_joints(s, channels);
     add_free_bodies(s, channels);
     add_drives(s, channels);
@@ -425,7 +425,8 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (s->tower_top != NULL) add_tower(s, channels);
     add_each(s, channels, sample_tips, BOUGH_CHANNELS_TIP, s->n_beam, name_tip);
     bough_observe_sections(s, channels);
-    if (s->tower_top != NULL) bough_observe_yaw_bearing(s, channels);
+    if (s->tower_top != NULL)
+        bough_channel_group_add(channels, bough_observe_yaw_bearing, s, BOUGH_CHANNELS_YAW_BEARING);
     s->n_motion_channel = channels->count;
     add_each(s, channels, sample_fmus, BOUGH_CHANNELS_FMU, s->n_fmu, name_fmu);
     if (turbine) bough_observe_shaft(s, channels);

@@ -116,7 +116,7 @@ void bough_observe_sections(bough_simulation *s, bough_channels *list) {
 
 // The opposite of the wrench of the tower's end on the bodies that it carries, in the axes of the tower's
 // body that rotate with the section.
-static void sample_yaw_bearing(void *self, double t, double *value) {
+void bough_observe_yaw_bearing(void *self, double t, double *value) {
     const bough_simulation *s = self;
     const bough_beam *top = s->tower_top;
     double w[BOUGH_ROD_MOST_OUTPUTS];
@@ -130,10 +130,6 @@ static void sample_yaw_bearing(void *self, double t, double *value) {
     bough_mat3 axes = bough_rotation_matrix(bough_quaternion_product(p, back));
     value = bough_observe_vector(bough_mat3_tmul(axes, force), 1e3, value);
     bough_observe_vector(bough_mat3_tmul(axes, moment), 1e3, value);
-}
-
-void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
-    bough_channel_group_add(list, sample_yaw_bearing, s, BOUGH_CHANNELS_YAW_BEARING);
 }
 
 // -- the shaft: rotation of the hub, torque between hub and drive train -----------------------------
@@ -196,7 +192,7 @@ void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double 
     }
 }
 
-static void sample_turn(void *self, double t, double *value) {
+void bough_observe_turn(void *self, double t, double *value) {
     (void)t;
     double angle, speed;
     bough_simulation_hub_turn(self, &angle, &speed);
@@ -247,10 +243,6 @@ static void sample_torque(void *self, double t, double *value) {
     bough_simulation_hub_turn(s, &angle, &speed);
     value[0] = torque / 1e3;
     value[1] = torque * speed / 1e3;
-}
-
-void bough_observe_turn(bough_simulation *s, bough_channels *list) {
-    bough_channel_group_add(list, sample_turn, s, BOUGH_CHANNELS_ROTOR);
 }
 
 void bough_observe_shaft(bough_simulation *s, bough_channels *list) {
