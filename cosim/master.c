@@ -271,17 +271,11 @@ bough_status bough_step(bough_master *m) {
 void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_coupling *c = m->coupling;
     // where the run is
-    bough_snapshot_take(s, &m->time, sizeof m->time);
-    bough_snapshot_take(s, &m->steps, sizeof m->steps);
-    bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
-    bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
-    bough_snapshot_take(s, &m->begun, sizeof m->begun);
-    bough_snapshot_take(s, &m->many_steps, sizeof m->many_steps);
+    BOUGH_SNAPSHOT(s, m->time, m->steps, m->grid_index, m->at_event, m->begun, m->many_steps);
     bough_snapshot_take(s, &m->split, sizeof m->split);
     // members, coupling and scheme; what checks and controls the steps
     bough_scheme_snapshot(c, s);
-    bough_snapshot_take(s, &c->t0, sizeof c->t0);
-    bough_snapshot_take(s, &c->t1, sizeof c->t1);
+    BOUGH_SNAPSHOT(s, c->t0, c->t1);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;

@@ -121,8 +121,7 @@ void bough_member_snapshot(bough_member *m, bough_snapshot *s) {
     const bough_integrator_ops *ops = m->integrator.ops;
     // without the method's own memory it starts anew
     bool kept = ops != NULL && ops->transfer != NULL, started = m->started && kept;
-    bough_snapshot_take(s, &m->time, sizeof m->time);
-    bough_snapshot_take(s, &started, sizeof started);
+    BOUGH_SNAPSHOT(s, m->time, started);
     bough_snapshot_doubles(s, m->state, m->system.n_state);
     if (kept) ops->transfer(m->integrator.self, s);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) m->started = started;

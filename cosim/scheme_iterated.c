@@ -355,8 +355,7 @@ static bough_status step(bough_coupling *c) {
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     iteration *it = c->scheme_data;
     bough_snapshot_doubles(s, it->size, it->n);
-    bough_snapshot_take(s, &it->sweeps, sizeof it->sweeps);
-    bough_snapshot_take(s, &it->unfinished, sizeof it->unfinished);
+    BOUGH_SNAPSHOT(s, it->sweeps, it->unfinished);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) it->length = 0; // Jacobians are made anew
 }
 

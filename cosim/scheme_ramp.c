@@ -361,11 +361,7 @@ static void obtained(bough_coupling *c) {
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     ramp *r = c->scheme_data;
     bough_snapshot_doubles(s, r->deficit, c->assembly->n_input);
-    bough_snapshot_take(s, &r->theta, sizeof r->theta);
-    bough_snapshot_take(s, &r->ratio, sizeof r->ratio);
-    bough_snapshot_take(s, &r->damped, sizeof r->damped);
-    bough_snapshot_take(s, &r->measured, sizeof r->measured);
-    bough_snapshot_take(s, &r->repays, sizeof r->repays);
+    BOUGH_SNAPSHOT(s, r->theta, r->ratio, r->damped, r->measured, r->repays);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) r->span = 0;
 }
 

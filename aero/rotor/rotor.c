@@ -121,10 +121,7 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
 }
 
 void bough_rotor_result_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
-    bough_snapshot_doubles(s, &data->thrust, 1);
-    bough_snapshot_doubles(s, &data->torque, 1);
-    bough_snapshot_take(s, &data->disk_wind, sizeof data->disk_wind);
-    bough_snapshot_take(s, &data->disk_velocity, sizeof data->disk_velocity);
+    BOUGH_SNAPSHOT(s, data->thrust, data->torque, data->disk_wind, data->disk_velocity);
     for (int b = 0; b < rotor->n_blade; b++)
         bough_snapshot_doubles(s, data->scratch->blade[b].results, RESULTS * rotor->stride);
 }
@@ -204,9 +201,7 @@ int bough_rotor_memory_states(const bough_rotor *rotor, int *row) {
 void bough_rotor_memory_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
     const bough_rotor_memory *memory = &data->memory;
     if (!memory->clock) return;
-    bough_snapshot_doubles(s, &memory->clock->time, 1);
-    bough_snapshot_doubles(s, &memory->clock->tau, 1);
-    bough_snapshot_take(s, &memory->clock->started, sizeof memory->clock->started);
+    BOUGH_SNAPSHOT(s, memory->clock->time, memory->clock->tau, memory->clock->started);
     for (int k = 0; memory->station && k < n_section(rotor); k++)
         bough_snapshot_take(s, &memory->station[k].state, sizeof memory->station[k].state);
     for (int k = 0; memory->stall && k < n_section(rotor); k++)

@@ -34,3 +34,16 @@ static inline void bough_snapshot_take(bough_snapshot *s, void *memory, size_t s
 static inline void bough_snapshot_doubles(bough_snapshot *s, double *x, int n) {
     bough_snapshot_take(s, x, (size_t)n * sizeof *x);
 }
+
+// Variables of any types, up to six, in their order.
+#define BOUGH_SNAPSHOT(s, ...)                                                                               \
+    BOUGH_SNAPSHOT_OF(__VA_ARGS__, BOUGH_SNAPSHOT_6, BOUGH_SNAPSHOT_5, BOUGH_SNAPSHOT_4, BOUGH_SNAPSHOT_3,   \
+                      BOUGH_SNAPSHOT_2, BOUGH_SNAPSHOT_1, )                                                  \
+    (s, __VA_ARGS__)
+#define BOUGH_SNAPSHOT_OF(a, b, c, d, e, f, name, ...) name
+#define BOUGH_SNAPSHOT_1(s, x) bough_snapshot_take(s, &(x), sizeof(x))
+#define BOUGH_SNAPSHOT_2(s, x, ...) BOUGH_SNAPSHOT_1(s, x), BOUGH_SNAPSHOT_1(s, __VA_ARGS__)
+#define BOUGH_SNAPSHOT_3(s, x, ...) BOUGH_SNAPSHOT_1(s, x), BOUGH_SNAPSHOT_2(s, __VA_ARGS__)
+#define BOUGH_SNAPSHOT_4(s, x, ...) BOUGH_SNAPSHOT_1(s, x), BOUGH_SNAPSHOT_3(s, __VA_ARGS__)
+#define BOUGH_SNAPSHOT_5(s, x, ...) BOUGH_SNAPSHOT_1(s, x), BOUGH_SNAPSHOT_4(s, __VA_ARGS__)
+#define BOUGH_SNAPSHOT_6(s, x, ...) BOUGH_SNAPSHOT_1(s, x), BOUGH_SNAPSHOT_5(s, __VA_ARGS__)

@@ -270,9 +270,7 @@ void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_sna
     bough_snapshot_take(s, m->group, (size_t)m->n_group * sizeof *m->group);
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
     bough_snapshot_take(s, m->account, (size_t)a->n_pair * sizeof *m->account);
-    bough_snapshot_take(s, &m->window_steps, sizeof m->window_steps);
-    bough_snapshot_take(s, &m->window_time, sizeof m->window_time);
-    bough_snapshot_take(s, &m->unbalanced, sizeof m->unbalanced);
+    BOUGH_SNAPSHOT(s, m->window_steps, m->window_time, m->unbalanced);
 }
 
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c) {

@@ -32,12 +32,10 @@ static uint64_t sum_of(const head *h, const char *copy) {
 static void take_state(bough_run_command *command, bough_snapshot *s) {
     bough_run *run = &command->run;
     bough_run_snapshot(run, s);
-    bough_snapshot_take(s, &command->rows, sizeof command->rows);
-    bough_snapshot_take(s, &command->frames_kept, sizeof command->frames_kept);
+    BOUGH_SNAPSHOT(s, command->rows, command->frames_kept);
     bough_snapshot_take(s, command->statistics,
                         (size_t)command->recorded.count * sizeof *command->statistics);
-    bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
-    bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
+    BOUGH_SNAPSHOT(s, run->wall_s, run->cpu_s);
 }
 
 static void move(bough_run_command *command, bough_snapshot_move direction) {

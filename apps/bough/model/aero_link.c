@@ -378,8 +378,7 @@ static void snapshot(void *self, bough_snapshot *s) {
     bough_snapshot_take(s, &link->started, sizeof link->started);
     for (int i = 0; i < 2; i++) {
         int k = i == 0 ? link->shown : 1 - link->shown;
-        bough_snapshot_take(s, &link->factor[k], sizeof link->factor[k]);
-        bough_snapshot_take(s, &link->time[k], sizeof link->time[k]);
+        BOUGH_SNAPSHOT(s, link->factor[k], link->time[k]);
         bough_rotor_result_snapshot(link->rotor, &link->data[k], s);
     }
     for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);

@@ -150,8 +150,6 @@ void bough_aero_motion_expect_blade(bough_aero_motion *m, int b) {
 // -- saving ---------------------------------------------------------------------------------------
 
 void bough_aero_motion_snapshot(bough_aero_motion *m, bough_snapshot *s) {
-    bough_snapshot_take(s, &m->known, sizeof m->known);
-    bough_snapshot_take(s, &m->time, sizeof m->time);
-    bough_snapshot_take(s, &m->ahead, sizeof m->ahead);
+    BOUGH_SNAPSHOT(s, m->known, m->time, m->ahead);
     for (int i = 0; i < CALLS; i++) bough_snapshot_doubles(s, m->state[i], m->n_blade * m->n_state);
 }

@@ -286,10 +286,7 @@ double bough_aero_signal_missed(const bough_aero_signal *s) { return sqrt(s->mis
 // -- saving ---------------------------------------------------------------------------------------
 
 void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot) {
-    bough_snapshot_take(snapshot, &s->start, sizeof s->start);
-    bough_snapshot_take(snapshot, &s->span, sizeof s->span);
-    bough_snapshot_take(snapshot, &s->damped, sizeof s->damped);
-    bough_snapshot_take(snapshot, &s->missed, sizeof s->missed);
+    BOUGH_SNAPSHOT(snapshot, s->start, s->span, s->damped, s->missed);
     bough_snapshot_doubles(snapshot, s->row, stored(s));
     if (snapshot->move == BOUGH_SNAPSHOT_RESTORE && s->span > 0) put(s);
 }

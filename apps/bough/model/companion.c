@@ -523,19 +523,10 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     // a restored integrator counts on: what is kept are its steps since then
     long steps = counts_of(c).steps;
     c->counted.steps = steps - c->counted.steps;
-    bough_snapshot_take(s, &c->counted, sizeof c->counted);
-    bough_snapshot_take(s, &c->corners, sizeof c->corners);
-    bough_snapshot_take(s, &c->corner, sizeof c->corner);
+    BOUGH_SNAPSHOT(s, c->counted, c->corners, c->corner);
     c->counted.steps = steps - c->counted.steps;
-    bough_snapshot_take(s, &c->compared, sizeof c->compared);
-    bough_snapshot_take(s, &c->ratio, sizeof c->ratio);
-    bough_snapshot_take(s, &c->flutters, sizeof c->flutters);
-    bough_snapshot_take(s, c->reason, sizeof c->reason);
-    bough_snapshot_take(s, &c->from, sizeof c->from);
-    bough_snapshot_take(s, &c->run->master->compared, sizeof c->run->master->compared);
-    bough_snapshot_take(s, &c->record.n, sizeof c->record.n);
-    bough_snapshot_take(s, &c->record.shared, sizeof c->record.shared);
-    bough_snapshot_take(s, &c->record.taken, sizeof c->record.taken);
+    BOUGH_SNAPSHOT(s, c->compared, c->ratio, c->flutters, c->reason, c->from, c->run->master->compared);
+    BOUGH_SNAPSHOT(s, c->record.n, c->record.shared, c->record.taken);
     bough_snapshot_doubles(s, c->record.row, c->record.row ? BOUGH_RECORD_MOST * c->record.width : 0);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     c->status = c->finer.status = bough_ok();

@@ -135,9 +135,5 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
 void bough_finer_snapshot(bough_finer *f, bough_snapshot *s) {
     if (!f->other.simulation) return;
     bough_simulation_snapshot(f->other.simulation, s);
-    bough_snapshot_take(s, &f->follows, sizeof f->follows);
-    bough_snapshot_take(s, &f->from, sizeof f->from);
-    bough_snapshot_take(s, &f->until, sizeof f->until);
-    bough_snapshot_take(s, &f->left, sizeof f->left);
-    bough_snapshot_take(s, &f->work, sizeof f->work);
+    BOUGH_SNAPSHOT(s, f->follows, f->from, f->until, f->left, f->work);
 }

@@ -217,8 +217,7 @@ void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
     bough_companion_snapshot(run->companion, s);
     take_statistics(run, s);
     for (int i = 0; i < run->n_record; i++) {
-        bough_snapshot_take(s, &run->record[i].next, sizeof run->record[i].next);
-        bough_snapshot_take(s, &run->record[i].last, sizeof run->record[i].last);
+        BOUGH_SNAPSHOT(s, run->record[i].next, run->record[i].last);
     }
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     run->outcome = bough_ok();
