@@ -54,14 +54,9 @@ void bough_node_move(bough_node *node, const bough_node *at) {
     }
 }
 
-static const char *name_of(const bough_node *item) {
-    const bough_node *name = bough_node_find(item, "name");
-    return name != NULL && name->kind == BOUGH_SCALAR ? name->text : NULL;
-}
-
 static bool has_names(const bough_node *list) {
     bool all = list->kind == BOUGH_SEQUENCE && list->n > 0;
-    for (int i = 0; i < list->n && all; i++) all = name_of(list->value[i]) != NULL;
+    for (int i = 0; i < list->n && all; i++) all = bough_node_name(list, i) != NULL;
     return all;
 }
 
@@ -77,21 +72,9 @@ static bough_node *merge_at(merger *m, const char *before, const char *key, cons
     return merged;
 }
 
-static const char *name_at(const bough_node *node, int i) {
-    return node->kind == BOUGH_MAPPING ? node->key[i]->text : name_of(node->value[i]);
-}
-
-int bough_node_index(const bough_node *node, const char *name) {
-    for (int i = 0; i < node->n; i++) {
-        const char *text = name_at(node, i);
-        if (text != NULL && strcmp(text, name) == 0) return i;
-    }
-    return -1;
-}
-
 bough_suggestion bough_node_suggest(bough_arena *arena, const bough_node *node, const char *name) {
     const char **known = bough_arena_take(arena, ((size_t)node->n + 1) * sizeof *known);
-    for (int i = 0; i < node->n; i++) known[i] = name_at(node, i);
+    for (int i = 0; i < node->n; i++) known[i] = bough_node_name(node, i);
     return bough_suggest(name, known, node->n);
 }
 
@@ -106,14 +89,14 @@ static bough_node *merge_values(merger *m, const bough_node *base, const bough_n
     const char *before = list ? "[" : m->path[0] ? "." : "", *after = list ? "]" : "";
     bough_node *merged = bough_node_start(m->arena, base, base->n + over->n);
     for (int i = 0; i < base->n; i++) {
-        const char *name = name_at(base, i);
+        const char *name = bough_node_name(base, i);
         int other = bough_node_index(over, name);
         bough_node *value = base->value[i];
         if (other >= 0) value = merge_at(m, before, name, after, value, over->value[other]);
         if (value != NULL) bough_node_append(merged, list ? NULL : base->key[i], value);
     }
     for (int i = 0; i < over->n; i++) {
-        if (bough_node_index(base, name_at(over, i)) >= 0) continue;
+        if (bough_node_index(base, bough_node_name(over, i)) >= 0) continue;
         if (over->kind != base->kind || bough_node_is_null(over->value[i])) {
             nothing_to_remove(m, over->key[i], base);
         } else {

@@ -24,9 +24,6 @@ bough_node *bough_node_start(bough_arena *arena, const bough_node *like, int roo
 // Appends to a container that has room; `key` NULL in a sequence.
 void bough_node_append(bough_node *node, bough_node *key, bough_node *value);
 
-// The place of the value of that name: of its key in a mapping, of its own key 'name' in a list; −1: none.
-int bough_node_index(const bough_node *node, const char *name);
-
 // The name in the container that is nearest to a misspelt one.
 bough_suggestion bough_node_suggest(bough_arena *arena, const bough_node *node, const char *name);
 

@@ -47,6 +47,7 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
         return false;
     }
     char *text = bough_arena_string(r->arena, head->text), why[160];
+    double factor;
     char *space = strchr(text, ' ');
     if (space != NULL) *space = '\0';
     *name = *head;
@@ -59,7 +60,7 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
     }
     if (*unit == NULL) return true;
     bool one_number = key->kind == BOUGH_KEY_NUMBER;
-    if (one_number && bough_unit_fits(*unit, key->dimension, why)) return true;
+    if (one_number && bough_unit_fits(*unit, key->dimension, &factor, why)) return true;
     bough_schema_error(r, head, "", one_number ? "column '%s': %s" : "column '%s' takes no unit", text, why);
     return false;
 }
@@ -322,28 +323,19 @@ static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const
     bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);
 }
 
-static bough_node *key_node(const bough_node *mapping, const char *name, int *index) {
-    for (int i = 0; mapping != NULL && i < mapping->n; i++) {
-        *index = i;
-        if (strcmp(mapping->key[i]->text, name) == 0) return mapping->key[i];
-    }
-    return NULL;
-}
-
 static void read_one_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
                          const bough_node *node, const char *const *units, void *item) {
-    int index = 0;
-    bough_node *at = key_node(node, key->name, &index);
+    int index = bough_node_index(node, key->name);
     relevance use = applies(schema, key, item);
-    if (at != NULL && use == APPLIES) {
+    if (index >= 0 && use == APPLIES) {
         size_t length = bough_schema_push_key(r, key->name);
         r->unit = units == NULL ? NULL : units[index];
         read_value(r, key, node->value[index], item);
         r->unit = NULL;
         bough_schema_pop(r, length);
-    } else if (at != NULL && use == APPLIES_NOT) {
-        refuse_key(r, schema, key, at, item);
-    } else if (at == NULL && use == APPLIES) {
+    } else if (index >= 0 && use == APPLIES_NOT) {
+        refuse_key(r, schema, key, node->key[index], item);
+    } else if (index < 0 && use == APPLIES) {
         if (key->required && node != NULL) {
             bough_schema_error(r, node, "", "required key '%s' is missing", key->name);
         }

@@ -210,8 +210,8 @@ void bough_schema_help_units(FILE *stream);
 
 // -- what the files of the schema share among themselves: units and ranges --------------------------
 
-// Whether the text is a unit of the dimension; `why` then says why not.
-bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]);
+// Whether the text is a unit of the dimension, and its factor; otherwise `why` has the reason.
+bool bough_unit_fits(const char *text, bough_dimension dimension, double *factor, char why[160]);
 
 // Memory for the items of a list, which is then in the key's field of the struct `item` with its count; NULL
 // (and an error) when the node is not one long enough.

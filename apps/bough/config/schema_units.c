@@ -147,16 +147,10 @@ bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_U
     return sign > 0;
 }
 
-// The factor of a unit expression; false with a reason when it is not of the dimension.
-static bool unit_factor(const char *text, bough_dimension dimension, double *factor, char why[160]) {
+bool bough_unit_fits(const char *text, bough_dimension dimension, double *factor, char why[160]) {
     int exponent[N_BASE];
     return bough_unit_base(text, factor, exponent, why) &&
            memcmp(exponent, dimensions[dimension].exponent, sizeof exponent) == 0;
-}
-
-bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160]) {
-    double factor;
-    return unit_factor(text, dimension, &factor, why);
 }
 
 // -- numbers --------------------------------------------------------------------------------------
@@ -208,7 +202,7 @@ bool bough_quantity(const char *text, bough_dimension dimension, double *value, 
     if (*rest == '\0') return !is_ambiguous(text, dimension, *value, why);
     if (*rest != ' ' && strspn(rest, "0123456789.+-*/") > 0) return false;
     double factor;
-    if (!unit_factor(rest, dimension, &factor, why)) return false;
+    if (!bough_unit_fits(rest, dimension, &factor, why)) return false;
     *value *= factor;
     return isfinite(*value);
 }

@@ -440,12 +440,23 @@ bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *
     return root;
 }
 
-bough_node *bough_node_find(const bough_node *node, const char *key) {
-    if (node == NULL || node->kind != BOUGH_MAPPING) return NULL;
-    for (int i = 0; i < node->n; i++) {
-        if (strcmp(node->key[i]->text, key) == 0) return node->value[i];
+const char *bough_node_name(const bough_node *node, int i) {
+    if (node->kind == BOUGH_MAPPING) return node->key[i]->text;
+    const bough_node *name = bough_node_find(node->value[i], "name");
+    return name != NULL && name->kind == BOUGH_SCALAR ? name->text : NULL;
+}
+
+int bough_node_index(const bough_node *node, const char *name) {
+    for (int i = 0; node != NULL && i < node->n; i++) {
+        const char *text = bough_node_name(node, i);
+        if (text != NULL && strcmp(text, name) == 0) return i;
     }
-    return NULL;
+    return -1;
+}
+
+bough_node *bough_node_find(const bough_node *node, const char *key) {
+    int i = node != NULL && node->kind == BOUGH_MAPPING ? bough_node_index(node, key) : -1;
+    return i < 0 ? NULL : node->value[i];
 }
 
 const bough_node *bough_node_below(const bough_node *node, const char *path, const bough_node **last) {
@@ -453,9 +464,9 @@ const bough_node *bough_node_below(const bough_node *node, const char *path, con
     for (size_t n; node != NULL && *path != '\0'; path += n + (path[n] == '.')) {
         n = strcspn(path, ".");
         snprintf(key, sizeof key, "%.*s", (int)n, path);
-        *last = node;
+        if (last != NULL) *last = node;
         node = bough_node_find(node, key);
     }
-    if (node != NULL) *last = node;
+    if (node != NULL && last != NULL) *last = node;
     return node;
 }

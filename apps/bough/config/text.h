@@ -66,9 +66,16 @@ bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *
 bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *text, size_t size,
                              bough_errors *errors);
 
+// The name of the i-th value: its key in a mapping, the text of its own key 'name' in a list; NULL: it has
+// none.
+const char *bough_node_name(const bough_node *node, int i);
+
+// The place of the first value of that name; −1: there is none, or no node.
+int bough_node_index(const bough_node *node, const char *name);
+
 // The value of a key in a mapping, NULL when there is none or the node is no mapping (or NULL).
 bough_node *bough_node_find(const bough_node *node, const char *key);
 
-// The value at "output.frames" below a mapping, NULL where a key of it is left out. *last: the last value
-// found on the way there, the mapping itself at least.
+// The value at "output.frames" below a mapping, NULL where a key of it is left out. *last (NULL: not
+// wanted): the last value found on the way there, the mapping itself at least.
 const bough_node *bough_node_below(const bough_node *node, const char *path, const bough_node **last);

@@ -79,12 +79,6 @@ static void warn_law(const bough_scene_control *control, FILE *stream) {
 
 // -- settings that are not used -------------------------------------------------------------------
 
-// The value at "coupling.order"; NULL: there is none.
-static const bough_node *find_path(const bough_node *node, const char *path) {
-    const bough_node *last;
-    return bough_node_below(node, path, &last);
-}
-
 // Whether to warn about a setting that the chosen scheme, solver or duration does not use: not where the
 // command line replaces the choice alone, since the scene gives the setting for its own choice.
 static bool is_unused(const bough_node *given, const bough_node *choice) {
@@ -108,9 +102,9 @@ static void warn_scheme(const bough_scene_simulation *s, FILE *stream) {
     const bough_scheme *scheme = bough_scheme_at(s->coupling.scheme), *reader;
     const bough_scheme_key *key;
     for (int i = 0; (key = bough_scheme_key_at(i)) != NULL; i++) {
-        const bough_node *given = find_path(s->node, key->path);
+        const bough_node *given = bough_node_below(s->node, key->path, NULL);
         if (bough_scheme_reads(scheme, key->option)) continue;
-        if (!is_unused(given, find_path(s->node, "coupling.scheme"))) continue;
+        if (!is_unused(given, bough_node_below(s->node, "coupling.scheme", NULL))) continue;
         char readers[160] = "";
         for (int k = 0; (reader = bough_scheme_at(k)) != NULL; k++) {
             if (!bough_scheme_reads(reader, key->option)) continue;
@@ -142,7 +136,7 @@ static void warn_micro(const bough_scene *scene, const bough_scene_body *b, FILE
     snprintf(path, sizeof path, "body '%.40s': micro", b->name);
     if (bough_scheme_reads(scheme, BOUGH_READS_MEMBERS)) {
         warn_solver(&b->micro, path, stream);
-    } else if (is_unused(b->micro.node, find_path(s->node, "coupling.scheme"))) {
+    } else if (is_unused(b->micro.node, bough_node_below(s->node, "coupling.scheme", NULL))) {
         warn(b->micro.node, stream, "%s: not used with 'scheme: %s'", path, scheme->name);
     }
 }
