@@ -25,6 +25,16 @@ void bough_picture_text(FILE *svg, const char *text) {
     }
 }
 
+// An element of text, whose attributes are printed.
+__attribute__((format(printf, 3, 4))) static void put_text(FILE *svg, const char *text, const char *format,
+                                                           ...) {
+    char attributes[160];
+    BOUGH_PRINT(attributes, format);
+    fprintf(svg, "<text %s>", attributes);
+    bough_picture_text(svg, text);
+    fputs("</text>\n", svg);
+}
+
 // Characters in UTF-8.
 int bough_picture_letters(const char *text) {
     int n = 0;
@@ -133,14 +143,10 @@ static void draw_axes(const bough_chart_panel *p, FILE *svg) {
     }
     fprintf(svg, "<path class=\"axis\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", p->x.from, p->y.to, p->y.from,
             p->x.to);
-    fprintf(svg, "<text x=\"%.1f\" y=\"%.1f\">", p->x.from, p->y.to - 10);
-    bough_picture_text(svg, p->heading);
-    fputs("</text>\n", svg);
-    if (!p->across) return;
-    fprintf(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", (p->x.from + p->x.to) / 2,
-            p->y.from + 36);
-    bough_picture_text(svg, p->across);
-    fputs("</text>\n", svg);
+    put_text(svg, p->heading, "x=\"%.1f\" y=\"%.1f\"", p->x.from, p->y.to - 10);
+    if (p->across)
+        put_text(svg, p->across, "x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\"", (p->x.from + p->x.to) / 2,
+                 p->y.from + 36);
 }
 
 // -- charts ---------------------------------------------------------------------------------------
@@ -217,10 +223,8 @@ static void draw_label(const bough_chart *c, const bough_chart_panel *p, labels 
     double width = bough_picture_letters(label) * LETTER;
     bool before = x + 7 + width > p->x.to + c->right;
     double left = before ? x - 7 - width : x + 7, at = free_place(used, left, left + width, y - 5);
-    fprintf(svg, "<text fill=\"%s\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>", colour_of(colour),
-            before ? x - 7 : x + 7, at, before ? " text-anchor=\"end\"" : "");
-    bough_picture_text(svg, label);
-    fputs("</text>\n", svg);
+    put_text(svg, label, "fill=\"%s\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s", colour_of(colour),
+             before ? x - 7 : x + 7, at, before ? " text-anchor=\"end\"" : "");
 }
 
 static void draw_point(const bough_chart *c, const bough_chart_panel *p, labels *used,
@@ -283,9 +287,8 @@ static void draw_legend(const bough_chart *c, double y, FILE *svg) {
         fprintf(svg, "<path stroke=\"%s\" stroke-width=\"1.6\" d=\"M%d %.1fh28\"/>\n", colour_of(l->colour),
                 LEFT, y);
         draw_mark(svg, LEFT + 14, y, l->colour, 1);
-        fprintf(svg, "</path>\n<text x=\"%d\" y=\"%.1f\">", LEFT + 36, y + 4);
-        bough_picture_text(svg, l->name);
-        fputs("</text>\n", svg);
+        fputs("</path>\n", svg);
+        put_text(svg, l->name, "x=\"%d\" y=\"%.1f\"", LEFT + 36, y + 4);
         y += LEGEND;
     }
 }
@@ -304,18 +307,12 @@ static int width_of(const bough_chart *c) {
     return width;
 }
 
-static void draw_title(FILE *svg, const char *title) {
-    fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", LEFT);
-    bough_picture_text(svg, title);
-    fputs("</text>\n", svg);
-}
-
 void bough_chart_write(const void *chart, FILE *svg) {
     const bough_chart *c = chart;
     int names = count_names(c), rows = (c->n_panel + c->per_row - 1) / c->per_row;
     int end = (c->title ? TITLE : 0) + rows * HEIGHT;
     bough_picture_begin(svg, width_of(c), end + (names > 0 ? (names + 1) * LEGEND : 0));
-    if (c->title) draw_title(svg, c->title);
+    if (c->title) put_text(svg, c->title, "x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\"", LEFT);
     for (int k = 0; k < c->n_panel; k++) draw_panel(c, k, svg);
     draw_legend(c, end + 0.5 * LEGEND, svg);
     fputs("</svg>\n", svg);
