@@ -45,8 +45,8 @@ static void set_joint(const bough_builder *b, const bough_scene_body *from, boug
     to->kind = (bough_joint_kind)joint->kind;
     set_parent(b, from, to);
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
-    to->axis = bough_scene_direction(joint->axis);
-    to->second_axis = bough_scene_direction(universal ? joint->second_axis : (joint->axis + 1) % 3);
+    to->axis = bough_unit3(joint->axis);
+    to->second_axis = bough_unit3(universal ? joint->second_axis : (joint->axis + 1) % 3);
     to->motion = joint->motion[0].def;
     to->second_motion = joint->motion[1].def;
     to->spring = joint->spring;

@@ -166,11 +166,6 @@ void bough_companion_step(bough_companion *c, bool ahead) {
 
 // -- comparing ------------------------------------------------------------------------------------
 
-// An angle near its jump differs by a whole turn.
-static double difference(const bough_channel *channel, double a, double b) {
-    return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
-}
-
 // A force of a body with a mesh follows accelerations, whose errors are of a lower order.
 static const double least_ratio_of_force = 0.4;
 
@@ -208,7 +203,7 @@ static double length_of(const bough_companion *c, int i, const double *value) {
 // new sample; they count at most by the change of the vector's length.
 static double change_of(const bough_companion *c, int i) {
     const bough_channel *list = c->channels->channel;
-    double change = fabs(difference(&list[i], c->value[i], c->before[i]));
+    double change = fabs(bough_channel_difference(&list[i], c->value[i], c->before[i]));
     bool component = list[i].vector != i || (i + 1 < c->channels->count && list[i + 1].vector == i);
     return component ? fmin(change, fabs(length_of(c, i, c->value) - length_of(c, i, c->before))) : change;
 }
@@ -259,7 +254,7 @@ static void compare_finer(bough_companion *c, double work) {
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (held && channel->sampled) continue; // an older sample than the finer one
-        double error = f->ratio * fabs(difference(channel, c->value[i], f->other.value[i]));
+        double error = f->ratio * fabs(bough_channel_difference(channel, c->value[i], f->other.value[i]));
         if (!(error > c->least[i])) continue;
         grows = grows || is_large(c, i, error);
         c->least[i] = error;
@@ -407,7 +402,7 @@ static void compare(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         double error = ratio_of(c, channel, ratio, held[channel->sampled]) *
-                       fabs(difference(channel, c->value[i], c->coarser.value[i]));
+                       fabs(bough_channel_difference(channel, c->value[i], c->coarser.value[i]));
         double late = stale(c, i);
         error = error > late ? error : late;
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins

@@ -65,8 +65,7 @@ static void compare(const bough_channels *channels, const double *a, const doubl
                     const between *x) {
     for (int i = 0; x->largest && i < channels->count; i++) {
         const bough_channel *channel = &channels->channel[i];
-        double difference = a[i] - b[i];
-        if (channel->turn > 0) difference = remainder(difference, channel->turn);
+        double difference = bough_channel_difference(channel, a[i], b[i]);
         x->largest[i] =
             fmax(x->largest[i], (channel->sampled && held ? x->held : x->part) * fabs(difference));
     }

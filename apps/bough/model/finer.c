@@ -60,11 +60,6 @@ static void join(bough_finer *f, bough_simulation *run) {
     snapshot_loads(f->other.simulation, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, f->loads, 0});
 }
 
-static long steps_of(const bough_simulation *s) {
-    bough_statistics sum = bough_master_statistics(s->master);
-    return sum.steps + sum.failed_steps;
-}
-
 // The next jump after a time; HUGE_VAL: none.
 static double next_jump(const bough_finer *f, double t) {
     int k = 0;
@@ -93,7 +88,7 @@ void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, doub
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
     if (jump > m->time + reach || work_left(f, m, work, true) < 0 || !bough_master_sampled(m)) return;
-    if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = steps_of(run);
+    if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = bough_simulation_steps(run);
     f->follows = true;
     f->until = jump + (extent_of(run->scene).steps + 0.5) * m->macro_step;
 }
@@ -117,7 +112,7 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
         f->left = own->master->time;
         return f->follows = false;
     }
-    long before = steps_of(own), by_run = steps_of(run) - f->run_steps;
+    long before = bough_simulation_steps(own), by_run = bough_simulation_steps(run) - f->run_steps;
     int most = most_steps(f, run->master, work);
     bough_other_run_limit(&f->other, most);
     f->run_steps += by_run;
@@ -126,7 +121,7 @@ bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     while (bough_is_ok(&f->status) && own->master->time < run->master->time)
         f->status = bough_other_run_step(&f->other, run);
     f->work += bough_simulation_work(own);
-    if (gave_up(f, most, steps_of(own) - before, by_run)) bough_validity_pass_fast(run);
+    if (gave_up(f, most, bough_simulation_steps(own) - before, by_run)) bough_validity_pass_fast(run);
     f->follows = bough_is_ok(&f->status) && own->master->time == run->master->time;
     if (f->follows) bough_other_run_sample(&f->other);
     return f->follows;

@@ -143,8 +143,8 @@ static void add_closures(bough_builder *b) {
         bough_closure_def *to = &closure[k];
         to->name = from->name;
         to->kind = (bough_joint_kind)from->kind;
-        to->axis = bough_scene_direction(from->axis);
-        to->second_axis = bough_scene_direction(from->second_axis);
+        to->axis = bough_unit3(from->axis);
+        to->second_axis = bough_unit3(from->second_axis);
         for (int end = 0; end < 2; end++) {
             to->marker[end] = bough_build_marker(b, from->name, from->body[end], from->placement[end]);
         }

@@ -224,7 +224,7 @@ static double inertial_torque(const shaft *x) {
     bough_twist fall = {d->gravity[link], {0, 0, 0}}, a = d->acceleration[link];
     a.linear = bough_sub(a.linear, fall.linear);
     bough_wrench w = bough_inertia_wrench(&x->inertia, a, d->twist[link]);
-    return bough_dot(w.moment, bough_scene_direction(s->scene->body[x->body].joint.axis));
+    return bough_dot(w.moment, bough_unit3(s->scene->body[x->body].joint.axis));
 }
 
 static bool has_inertia(const bough_inertia *i) {

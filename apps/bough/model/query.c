@@ -25,6 +25,11 @@ int bough_simulation_n_joints(const bough_simulation *s) {
     return n;
 }
 
+long bough_simulation_steps(const bough_simulation *s) {
+    bough_statistics sum = bough_master_statistics(s->master);
+    return sum.steps + sum.failed_steps;
+}
+
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].body == &s->scene->body[body]) return &s->beam[k];

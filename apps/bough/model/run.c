@@ -97,17 +97,11 @@ const double *bough_run_values(bough_run *run) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
-// Steps of all solvers, failed ones included.
-static double steps_of(const bough_simulation *s) {
-    bough_statistics sum = bough_master_statistics(s->master);
-    return (double)sum.steps + (double)sum.failed_steps;
-}
-
 static void finish_step(bough_run *run) {
     run->sampled = false;
     bough_validity_check(run->simulation);
     if (bough_is_ok(&run->outcome)) run->outcome = bough_validity_check_closed(run->simulation);
-    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
+    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation);
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
     bough_channels_know(&run->channels, NULL);
 }

@@ -74,6 +74,9 @@ bough_status bough_simulation_storable(const bough_simulation *s);
 // BOUGH_INVALID if the equations of a part, an FMU, are not known; `what` is the reason in the message.
 bough_status bough_simulation_known(const bough_simulation *s, const char *what);
 
+// Steps of all solvers since the start of the process, failed ones included.
+long bough_simulation_steps(const bough_simulation *s);
+
 // Sets input k to a value at once if it is a load; otherwise does nothing.
 void bough_simulation_put(const bough_simulation *s, int k, double value);
 

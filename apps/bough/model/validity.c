@@ -339,8 +339,9 @@ static void pass_fastest(bough_simulation *s, bough_limit limit, double value) {
     pass(s->validity, limit, f.body, s->master->time, value);
 }
 
-void bough_validity_check_work(bough_simulation *s, double steps) {
+void bough_validity_check_work(bough_simulation *s) {
     bough_validity *v = s->validity;
+    double steps = (double)bough_simulation_steps(s);
     double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts from 0
     v->steps = steps;
     if (taken < many_steps || v->limit[BOUGH_LIMIT_STEPS].passed) return;

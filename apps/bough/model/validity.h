@@ -51,8 +51,8 @@ void bough_validity_check(bough_simulation *s);
 // BOUGH_FAILED where a closed loop is open.
 bough_status bough_validity_check_closed(bough_simulation *s);
 
-// Counts macro steps with very many steps of solvers; `steps` of all solvers since the start of the process.
-void bough_validity_check_work(bough_simulation *s, double steps);
+// Counts macro steps with very many steps of solvers.
+void bough_validity_check_work(bough_simulation *s);
 
 // The finer solution beside the run needs too much work and ends.
 void bough_validity_pass_fast(bough_simulation *s);

@@ -33,6 +33,11 @@ typedef struct bough_channel {
     bough_sampling sampled; // by what; where the values are known at samples only
 } bough_channel;
 
+// Of two values; an angle near its jump differs by a whole turn.
+static inline double bough_channel_difference(const bough_channel *channel, double a, double b) {
+    return channel->turn > 0 ? remainder(a - b, channel->turn) : a - b;
+}
+
 // Writes the group's values at time t [s], each in its channel's unit.
 typedef void bough_channel_sample(void *self, double t, double *value);
 

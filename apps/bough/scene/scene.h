@@ -82,8 +82,7 @@ typedef struct bough_scene_simulation {
 
 typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bough_scene_axis;
 
-// Its unit vector, and the rotation about it by an angle [rad].
-bough_vec3 bough_scene_direction(int axis);
+// The rotation about it by an angle [rad]; bough_unit3 is its unit vector.
 bough_mat3 bough_scene_rotation(int axis, double angle);
 
 // The prescribed motion of an angle [rad, rad/s] or a displacement [m, m/s] of a joint.

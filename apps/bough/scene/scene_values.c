@@ -5,12 +5,8 @@
 
 // -- placement ------------------------------------------------------------------------------------
 
-bough_vec3 bough_scene_direction(int axis) {
-    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
-}
-
 bough_mat3 bough_scene_rotation(int axis, double angle) {
-    bough_vec3 turn = bough_scale(angle, bough_scene_direction(axis));
+    bough_vec3 turn = bough_scale(angle, bough_unit3(axis));
     return bough_rotation_matrix(bough_quaternion_exponential(turn));
 }
 
@@ -26,7 +22,7 @@ static bough_transform read_step(bough_schema_reader *r, const bough_node *node)
         bool named = axis[1] == '\0' && axis[0] >= 'x' && axis[0] <= 'z';
         bough_dimension dimension = rotates ? BOUGH_ANGLE : BOUGH_LENGTH;
         if ((moves || rotates) && named && bough_quantity(text + used, dimension, &amount, why)) {
-            if (moves) step.position = bough_scale(amount, bough_scene_direction(axis[0] - 'x'));
+            if (moves) step.position = bough_scale(amount, bough_unit3(axis[0] - 'x'));
             if (rotates) step.rotation = bough_scene_rotation(axis[0] - 'x', amount);
             return step;
         }
