@@ -299,7 +299,7 @@ static bool vary(const bough_tune_state *t, int variation, bough_tune_settings *
         s->scheme = bough_scheme_index(bough_scheme_advised()->name);
         s->solver = BOUGH_ROSENBROCK;
         s->step = fmin(bough_tune_step(s), 0.5 * s->macro_step);
-        return has_rods(&scene) && t->scene->n_closure == 0;
+        return has_rods(&scene) && t->scene->n_connector[BOUGH_SCENE_CLOSURE] == 0;
     }
 }
 

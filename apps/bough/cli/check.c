@@ -126,8 +126,8 @@ static void print_bodies(const bough_simulation *s) {
     printf("\nstates: %d", s->master->assembly->n_state);
     putchar('\n');
     if (whole) printf("integrated as a whole: %s, rtol %.6g\n", whole->solver, rtol);
-    if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
-    if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
+    if (tree->n_springs > 0) printf("springs: %d\n", tree->n_springs);
+    if (tree->n_bushings > 0) printf("bushings: %d\n", tree->n_bushings);
     if (tree->n_closures > 0) print_closures(tree);
 }
 

@@ -90,7 +90,7 @@ static bough_status build_tree(bough_builder *b) {
     s->view = bough_tree_data_create(b->arena, s->tree);
     s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     s->accelerated = bough_arena_doubles(b->arena, 1);
-    if (scene->n_bushing > 0) {
+    if (b->tree.n_bushings > 0) {
         bough_tree_kinematics(s->tree, s->tree->initial, s->view);
         bough_build_rest(s);
     }
@@ -219,8 +219,8 @@ static bough_status build_master(bough_builder *b) {
 static void take_arrays(bough_builder *b) {
     const bough_scene *scene = b->scene;
     size_t bodies = (size_t)scene->n_body, loads = (size_t)scene->n_load;
-    size_t pairs = (size_t)scene->n_spring + (size_t)scene->n_bushing + (size_t)scene->n_closure;
-    size_t markers = bodies + 2 * pairs + loads + (size_t)scene->n_marker + 1;
+    size_t markers = bodies + loads + (size_t)scene->n_marker + 1;
+    for (int k = 0; k < BOUGH_SCENE_CONNECTORS; k++) markers += 2 * (size_t)scene->n_connector[k];
     b->s = bough_arena_take(b->arena, sizeof *b->s);
     b->tree.bodies = b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body); // and ends of rods
     b->tree.ends = b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);

@@ -29,7 +29,7 @@ static bough_status explain_rods(const bough_simulation *s, int steps) {
     return bough_ok();
 }
 
-// Whether a spring, bushing or closure acts across a joint: the joint carries only one of its ends.
+// Whether a connector acts across a joint: the joint carries only one of its ends.
 static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
     bool moves[2];
     for (int end = 0; end < 2; end++)
@@ -37,19 +37,12 @@ static bool is_across(const bough_scene *scene, int joint, const int body[2]) {
     return moves[0] != moves[1];
 }
 
-static bool is_stiff(const bough_bushing_def *bushing) {
-    bool stiff = false;
-    for (int c = 0; c < 6; c++) stiff = stiff || bushing->stiffness[c] > 0;
-    return stiff;
-}
-
 static bool is_tied(const bough_scene *scene, int joint) {
-    for (int k = 0; k < scene->n_spring; k++)
-        if (scene->spring[k].def.stiffness > 0 && is_across(scene, joint, scene->spring[k].body)) return true;
-    for (int k = 0; k < scene->n_bushing; k++)
-        if (is_stiff(&scene->bushing[k].def) && is_across(scene, joint, scene->bushing[k].body)) return true;
-    for (int k = 0; k < scene->n_closure; k++)
-        if (is_across(scene, joint, scene->closure[k].body)) return true;
+    for (int kind = 0; kind < BOUGH_SCENE_CONNECTORS; kind++) {
+        const bough_scene_connector *c = scene->connector[kind], *end = c + scene->n_connector[kind];
+        for (; c < end; c++)
+            if (c->holds && is_across(scene, joint, c->body)) return true;
+    }
     return false;
 }
 
@@ -81,11 +74,11 @@ static const char *floating_body(bough_arena *arena, const bough_scene *scene) {
         const bough_scene_joint *joint = &scene->body[i].joint;
         if (joint->kind != BOUGH_JOINT_FREE) tie(group, (const int[2]){i, joint->parent});
     }
-    for (int k = 0; k < scene->n_spring; k++)
-        if (scene->spring[k].def.stiffness > 0) tie(group, scene->spring[k].body);
-    for (int k = 0; k < scene->n_bushing; k++)
-        if (is_stiff(&scene->bushing[k].def)) tie(group, scene->bushing[k].body);
-    for (int k = 0; k < scene->n_closure; k++) tie(group, scene->closure[k].body);
+    for (int kind = 0; kind < BOUGH_SCENE_CONNECTORS; kind++) {
+        const bough_scene_connector *c = scene->connector[kind], *end = c + scene->n_connector[kind];
+        for (; c < end; c++)
+            if (c->holds) tie(group, c->body);
+    }
     for (int i = 0; i < scene->n_body; i++)
         if (group_of(group, i + 1) != 0) return scene->body[i].name;
     return NULL;

@@ -110,45 +110,37 @@ static bough_transform at(const double x[3]) {
     return (bough_transform){bough_v3_load(x), bough_mat3_identity()};
 }
 
-static void add_springs(bough_builder *b) {
-    int n = b->tree.n_springs = b->scene->n_spring;
-    bough_spring_def *spring = bough_arena_take(b->arena, (size_t)n * sizeof *spring);
-    b->tree.springs = spring;
-    for (int k = 0; k < n; k++) {
-        const bough_scene_spring *from = &b->scene->spring[k];
-        spring[k] = from->def;
-        for (int end = 0; end < 2; end++)
-            spring[k].marker[end] = bough_build_marker(b, from->name, from->body[end], at(from->point[end]));
-    }
+// The marker of an end of a connector.
+static int add_marker(bough_builder *b, const bough_scene_connector *c, int end, bough_transform placement) {
+    return bough_build_marker(b, c->name, c->body[end], placement);
 }
 
-static void add_bushings(bough_builder *b) {
-    int n = b->tree.n_bushings = b->scene->n_bushing;
-    bough_bushing_def *bushing = bough_arena_take(b->arena, (size_t)n * sizeof *bushing);
-    b->tree.bushings = bushing;
-    for (int k = 0; k < n; k++) {
-        const bough_scene_bushing *from = &b->scene->bushing[k];
-        bushing[k] = from->def;
-        for (int end = 0; end < 2; end++)
-            bushing[k].marker[end] = bough_build_marker(b, from->name, from->body[end], at(from->point));
+static void add_connectors(bough_builder *b) {
+    const int *n = b->scene->n_connector;
+    bough_spring_def *spring = bough_arena_take(b->arena, (size_t)n[BOUGH_SCENE_SPRING] * sizeof *spring);
+    bough_bushing_def *bushing = bough_arena_take(b->arena, (size_t)n[BOUGH_SCENE_BUSHING] * sizeof *bushing);
+    bough_closure_def *closure = bough_arena_take(b->arena, (size_t)n[BOUGH_SCENE_CLOSURE] * sizeof *closure);
+    for (int k = 0; k < n[BOUGH_SCENE_SPRING]; k++) {
+        const bough_scene_connector *c = &b->scene->connector[BOUGH_SCENE_SPRING][k];
+        spring[k] = c->spring;
+        for (int end = 0; end < 2; end++) spring[k].marker[end] = add_marker(b, c, end, at(c->point[end]));
     }
-}
-
-static void add_closures(bough_builder *b) {
-    int n = b->tree.n_closures = b->scene->n_closure;
-    bough_closure_def *closure = bough_arena_take(b->arena, (size_t)n * sizeof *closure);
-    b->tree.closures = closure;
-    for (int k = 0; k < n; k++) {
-        const bough_scene_closure *from = &b->scene->closure[k];
-        bough_closure_def *to = &closure[k];
-        to->name = from->name;
-        to->kind = (bough_joint_kind)from->kind;
-        to->axis = bough_unit3(from->axis);
-        to->second_axis = bough_unit3(from->second_axis);
-        for (int end = 0; end < 2; end++) {
-            to->marker[end] = bough_build_marker(b, from->name, from->body[end], from->placement[end]);
-        }
+    for (int k = 0; k < n[BOUGH_SCENE_BUSHING]; k++) {
+        const bough_scene_connector *c = &b->scene->connector[BOUGH_SCENE_BUSHING][k];
+        bushing[k] = c->bushing;
+        for (int end = 0; end < 2; end++) bushing[k].marker[end] = add_marker(b, c, end, at(c->point[0]));
     }
+    for (int k = 0; k < n[BOUGH_SCENE_CLOSURE]; k++) {
+        const bough_scene_connector *c = &b->scene->connector[BOUGH_SCENE_CLOSURE][k];
+        closure[k] = (bough_closure_def){.name = c->name,
+                                         .kind = (bough_joint_kind)c->kind,
+                                         .axis = bough_unit3(c->axis),
+                                         .second_axis = bough_unit3(c->second_axis)};
+        for (int end = 0; end < 2; end++) closure[k].marker[end] = add_marker(b, c, end, c->placement[end]);
+    }
+    b->tree.springs = spring, b->tree.n_springs = n[BOUGH_SCENE_SPRING];
+    b->tree.bushings = bushing, b->tree.n_bushings = n[BOUGH_SCENE_BUSHING];
+    b->tree.closures = closure, b->tree.n_closures = n[BOUGH_SCENE_CLOSURE];
 }
 
 static void add_wrenches(bough_builder *b) {
@@ -167,9 +159,7 @@ static void add_wrenches(bough_builder *b) {
 
 void bough_build_forces(bough_builder *b) {
     const bough_scene *scene = b->scene;
-    add_springs(b);
-    add_bushings(b);
-    add_closures(b);
+    add_connectors(b);
     add_wrenches(b);
     b->s->first_marker = b->tree.n_markers;
     for (int k = 0; k < scene->n_marker; k++) {

@@ -120,14 +120,13 @@ static void add_vertex(bough_wrench inertial, double *wrench) {
     for (int k = 0; k < 6; k++) wrench[k] -= values[k];
 }
 
-static bool names(const int body[2], int other) { return body[0] == other || body[1] == other; }
-
 // Whether only its carrier, its weight and the air act on a body.
 static bool stands_alone(const bough_scene *scene, int body) {
     bool alone = bough_scene_carried_by(scene, body) < 0;
-    for (int k = 0; k < scene->n_spring; k++) alone = alone && !names(scene->spring[k].body, body);
-    for (int k = 0; k < scene->n_bushing; k++) alone = alone && !names(scene->bushing[k].body, body);
-    for (int k = 0; k < scene->n_closure; k++) alone = alone && !names(scene->closure[k].body, body);
+    for (int kind = 0; kind < BOUGH_SCENE_CONNECTORS; kind++) {
+        const bough_scene_connector *c = scene->connector[kind], *end = c + scene->n_connector[kind];
+        for (; c < end; c++) alone = alone && c->body[0] != body && c->body[1] != body;
+    }
     for (int k = 0; k < scene->n_load; k++)
         alone = alone && (scene->load[k].body_name == NULL || scene->load[k].body != body);
     return alone;

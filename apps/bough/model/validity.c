@@ -192,7 +192,7 @@ static void check_closures(bough_simulation *s) {
     double margin = bough_loops_margin(s->tree, s->view, &closure);
     v->margin = fmax(v->margin, margin);
     if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
-    const int *body = s->scene->closure[closure].body;
+    const int *body = s->scene->connector[BOUGH_SCENE_CLOSURE][closure].body;
     pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
 }
 
@@ -301,7 +301,7 @@ bough_status bough_validity_check_closed(bough_simulation *s) {
     return bough_fail(
         BOUGH_FAILED,
         "closure '%s' at %.6g s under scheme %s: its loop is open by %.2g of its size: %sthe steps are too long (try a smaller rtol or macro_step), or one of its bodies is much lighter than the others and needs more mass and inertia",
-        s->scene->closure[closure].name, s->master->time,
+        s->scene->connector[BOUGH_SCENE_CLOSURE][closure].name, s->master->time,
         bough_scheme_name(s->scene->simulation.coupling.scheme), opening,
         is_driven(s->tree) ? "it cannot follow the motion that a joint prescribes, or " : "");
 }

@@ -312,16 +312,29 @@ static inline bough_schedule bough_scene_load_schedule(const bough_scene_load *l
     return (bough_schedule){load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
 }
 
-// Springs and dampers along and about the axes of the first of two bodies, at a point of it; either may be
-// the ground. They are free of force in the initial position.
-typedef struct bough_scene_bushing {
+typedef enum bough_scene_connector_kind {
+    BOUGH_SCENE_SPRING,  // a linear spring and damper between two points
+    BOUGH_SCENE_BUSHING, // springs and dampers along and about the axes of the first body, at a point of it,
+                         // free of force in the initial position
+    BOUGH_SCENE_CLOSURE, // a joint that closes a loop
+    BOUGH_SCENE_CONNECTORS,
+} bough_scene_connector_kind;
+
+// Acts between two rigid bodies, or one and the ground.
+typedef struct bough_scene_connector {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
-    int body[2];           // indices, or BOUGH_GROUND
-    double point[3];       // in the first one's frame [m]
-    bough_bushing_def def; // without markers
-} bough_scene_bushing;
+    int body[2];               // indices, or BOUGH_GROUND
+    bool holds;                // by stiffness or a joint, not by damping alone
+    double point[2][3];        // of a spring, in the bodies' frames; the first also of a bushing [m]
+    bough_spring_def spring;   // without markers
+    bough_bushing_def bushing; // without markers
+    // of a closure
+    int kind;                     // bough_joint_kind, not free
+    bough_transform placement[2]; // of the joint's frame in either body's
+    int axis, second_axis; // bough_scene_axis in the first body's placement; of universal in the second's
+} bough_scene_connector;
 
 // A point of a rigid body or the ground that is recorded.
 typedef struct bough_scene_marker {
@@ -339,28 +352,6 @@ typedef struct bough_scene_sensor {
     int n_at;
     double *at; // (n_at) arc lengths from the root [m]
 } bough_scene_sensor;
-
-// A linear spring and damper between points of two rigid bodies or the ground.
-typedef struct bough_scene_spring {
-    const bough_node *node;
-    const char *name;
-    const char *body_name[2];
-    int body[2];          // indices, or BOUGH_GROUND
-    double point[2][3];   // in the body's frame [m]
-    bough_spring_def def; // without markers
-} bough_scene_spring;
-
-// A joint that closes a loop between two rigid bodies or the ground.
-typedef struct bough_scene_closure {
-    const bough_node *node;
-    const char *name;
-    int kind; // bough_joint_kind, not free
-    const char *body_name[2];
-    int body[2];                  // indices, or BOUGH_GROUND
-    bough_transform placement[2]; // of the joint's frame in either body's
-    int axis,
-        second_axis; // bough_scene_axis in the frame of `from`; the second, of universal, in that of `to`
-} bough_scene_closure;
 
 typedef struct bough_scene_turbine {
     const bough_node *node; // NULL: no turbine
@@ -505,12 +496,8 @@ typedef struct bough_scene {
     const bough_scene_body **by_name; // (n_body) by name, then by place
     int n_load;
     bough_scene_load *load; // (n_load)
-    int n_spring;
-    bough_scene_spring *spring; // (n_spring)
-    int n_bushing;
-    bough_scene_bushing *bushing; // (n_bushing)
-    int n_closure;
-    bough_scene_closure *closure; // (n_closure)
+    int n_connector[BOUGH_SCENE_CONNECTORS];
+    bough_scene_connector *connector[BOUGH_SCENE_CONNECTORS]; // (n_connector) by kind
     int n_marker;
     bough_scene_marker *marker; // (n_marker)
     int n_sensor;

@@ -41,7 +41,8 @@ bool bough_scene_suits_radau(const bough_scene *s) {
         states += b->repeat * own;
         jumps = jumps || b->joint.spring.stop_stiffness > 0;
     }
-    if (s->n_closure > 0) return states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
+    if (s->n_connector[BOUGH_SCENE_CLOSURE] > 0)
+        return states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
     return states <= FEW_STATES && !jumps;
 }
 

@@ -223,19 +223,21 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, void *item) 
     }
 }
 
-// The two ends of a spring, a bushing or a closure, named by `from` and `to`.
-static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_node *item,
-                      const char *const name[2], int body[2]) {
+static void link_connector(bough_schema_reader *r, const bough_scene *s, void *item) {
     static const char *const keys[] = {"from", "to"};
+    bough_scene_connector *c = item;
     for (int end = 0; end < 2; end++) {
-        body[end] = link_frame(r, s, item, keys[end], name[end]);
-        if (body[end] < 0 || !bough_scene_is_flexible(&s->body[body[end]])) continue;
-        bough_schema_error(r, item, keys[end],
-                           "'%s' must be a rigid body; it may hang on a rod and needs no mass", name[end]);
+        c->body[end] = link_frame(r, s, c->node, keys[end], c->body_name[end]);
+        if (c->body[end] < 0 || !bough_scene_is_flexible(&s->body[c->body[end]])) continue;
+        bough_schema_error(r, c->node, keys[end],
+                           "'%s' must be a rigid body; it may hang on a rod and needs no mass",
+                           c->body_name[end]);
     }
-    if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
-        bough_schema_error(r, item, "to", "must be another body");
+    if (c->body_name[0] != NULL && c->body_name[1] != NULL && strcmp(c->body_name[0], c->body_name[1]) == 0) {
+        bough_schema_error(r, c->node, "to", "must be another body");
     }
+    c->holds = c->spring.stiffness > 0;
+    for (int k = 0; k < 6; k++) c->holds = c->holds || c->bushing.stiffness[k] > 0;
 }
 
 // The joints of the tree by the kinds of a closure.
@@ -244,19 +246,10 @@ static const int closure_kinds[] = {BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,
                                     BOUGH_JOINT_PLANAR};
 
 static void link_closure(bough_schema_reader *r, const bough_scene *s, void *item) {
-    bough_scene_closure *c = item;
-    link_ends(r, s, c->node, c->body_name, c->body);
+    bough_scene_connector *c = item;
+    link_connector(r, s, c);
+    c->holds = true;
     if (c->kind >= 0) c->kind = closure_kinds[c->kind];
-}
-
-static void link_spring(bough_schema_reader *r, const bough_scene *s, void *item) {
-    bough_scene_spring *spring = item;
-    link_ends(r, s, spring->node, spring->body_name, spring->body);
-}
-
-static void link_bushing(bough_schema_reader *r, const bough_scene *s, void *item) {
-    bough_scene_bushing *bushing = item;
-    link_ends(r, s, bushing->node, bushing->body_name, bushing->body);
 }
 
 static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item) {
@@ -369,9 +362,12 @@ static const struct {
     size_t items, count, size; // place of the pointer and of the number of items, size of one
     void (*link)(bough_schema_reader *r, const bough_scene *s, void *item);
 } lists[] = {
-    LIST("loads", load, n_load, link_load),         LIST("markers", marker, n_marker, link_marker),
-    LIST("sensors", sensor, n_sensor, link_sensor), LIST("bushings", bushing, n_bushing, link_bushing),
-    LIST("springs", spring, n_spring, link_spring), LIST("closures", closure, n_closure, link_closure),
+    LIST("loads", load, n_load, link_load),
+    LIST("markers", marker, n_marker, link_marker),
+    LIST("sensors", sensor, n_sensor, link_sensor),
+    LIST("bushings", connector[BOUGH_SCENE_BUSHING], n_connector[BOUGH_SCENE_BUSHING], link_connector),
+    LIST("springs", connector[BOUGH_SCENE_SPRING], n_connector[BOUGH_SCENE_SPRING], link_connector),
+    LIST("closures", connector[BOUGH_SCENE_CLOSURE], n_connector[BOUGH_SCENE_CLOSURE], link_closure),
 };
 
 static void link_lists(bough_schema_reader *r, bough_scene *s) {

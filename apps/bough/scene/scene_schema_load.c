@@ -227,7 +227,7 @@ const bough_schema bough_scene_load_schema = {.name = "a load", .check = check_l
 )};
 #undef FILLS
 
-#define FILLS bough_scene_spring
+#define FILLS bough_scene_connector
 const bough_schema bough_scene_spring_schema = {.name = "a spring", KEYS(
     {KEY(TEXT, name), .required = true, .example = "stay",
      .help = "name of its channels, which end with Len and Frc"},
@@ -239,18 +239,16 @@ const bough_schema bough_scene_spring_schema = {.name = "a spring", KEYS(
      .help = "name of another rigid body, or ground"},
     {NAMED("to_point", VECTOR), AT(point[1]), .count = 3, UNIT(LENGTH), .fallback = ZERO3,
      .example = "[0, 0, 20]", .help = "in that body's frame; the two points must never coincide"},
-    {NAMED("stiffness", NUMBER), AT(def.stiffness), UNIT(STIFFNESS), .range = ">= 0", .fallback = "0", .example = "3 kN/m",
+    {NAMED("stiffness", NUMBER), AT(spring.stiffness), UNIT(STIFFNESS), .range = ">= 0", .fallback = "0", .example = "3 kN/m",
      .help = "of the spring"},
-    {NAMED("damping", NUMBER), AT(def.damping), .range = ">= 0", .fallback = "0", .example = "150",
+    {NAMED("damping", NUMBER), AT(spring.damping), .range = ">= 0", .fallback = "0", .example = "150",
      .help = "of the damper parallel to the spring, in N s/m"},
-    {NAMED("length", NUMBER), AT(def.length), UNIT(LENGTH), .range = ">= 0", .fallback = "0", .example = "21.5 m",
+    {NAMED("length", NUMBER), AT(spring.length), UNIT(LENGTH), .range = ">= 0", .fallback = "0", .example = "21.5 m",
      .help = "length of the spring without force"},
 )};
-#undef FILLS
 
-#define FILLS bough_scene_bushing
 #define THREE(key, member, what)                                                                             \
-    {NAMED(key, VECTOR), AT(def.member), .count = 3, .range = ">= 0", .fallback = ZERO3,                    \
+    {NAMED(key, VECTOR), AT(bushing.member), .count = 3, .range = ">= 0", .fallback = ZERO3,                    \
      .example = "[1e6, 1e6, 2e6]", .help = what}
 const bough_schema bough_scene_bushing_schema = {.name = "a bushing", KEYS(
     {KEY(TEXT, name), .required = true, .example = "yaw_bearing",
@@ -269,9 +267,7 @@ const bough_schema bough_scene_bushing_schema = {.name = "a bushing", KEYS(
     THREE("rotational_damping", damping[3], "about x, y, z, in N m s/rad"),
 )};
 #undef THREE
-#undef FILLS
 
-#define FILLS bough_scene_closure
 const bough_schema bough_scene_closure_schema = {.name = "a closure", KEYS(
     {KEY(TEXT, name), .required = true, .example = "pin",
      .help = "name of its channels Fx to Mz: force and moment on 'to', in the joint's frame there"},
