@@ -154,8 +154,7 @@ static bough_status check_opening(const opening *o) {
 static bough_status build(bough_arena *arena, void *self) {
     const opening *o = self;
     bough_session *s = o->session;
-    bough_status given = check_opening(o);
-    if (!bough_is_ok(&given)) return given;
+    BOUGH_TRY(check_opening(o));
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     bough_status status = bough_scene_read(arena, NULL, o->path, o->set, o->n_set, &errors, &scene);

@@ -32,7 +32,7 @@
     (const bough_channel_row[]){__VA_ARGS__}
 static const char body[] = "{a}: the body that the joint carries", named[] = "{a}: its name",
                   numbered[] = "{a}: number of the blade in turbine.blades, from 1";
-const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
+static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_ROTOR] = {"Rotor of a turbine", NULL, ROWS(
         SAME("RotSpeed", "rpm", "speed of the hub about the shaft, positive about the axis of the rotor's joint: of that joint and of a joint between generator and hub"),
         SAME("Azimuth", "deg", "angle of the hub about the shaft, from 0 to 360; 0 as the scene places the blades (OpenFAST: AzimB1Up 0)"))},
@@ -178,7 +178,7 @@ static void fill(const char *form, const char *a, const char *b, char *text, siz
 }
 
 void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b) {
-    const bough_channel_family *family = &bough_channel_families[part];
+    const bough_channel_family *family = &families[part];
     for (int k = 0; k < family->n; k++) {
         char name[2 * BOUGH_CHANNEL_NAME];
         fill(family->row[k].name, a, b, name, sizeof name);
@@ -208,5 +208,5 @@ static void print_family(const bough_channel_family *f, FILE *stream) {
 
 void bough_channel_table_help(FILE *stream) {
     fputs((const char *)bough_channel_help_text, stream);
-    for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&bough_channel_families[i], stream);
+    for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&families[i], stream);
 }

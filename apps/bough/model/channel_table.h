@@ -57,8 +57,6 @@ typedef enum bough_channel_part {
     BOUGH_CHANNEL_PARTS,
 } bough_channel_part;
 
-extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
-
 // Adds the channels of a part to the list's last group.
 void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b);
 

@@ -78,8 +78,7 @@ static bough_status record_end(bough_run *run, bough_status status) {
     for (int i = 0; i < run->n_record; i++) {
         bough_run_record *r = &run->record[i];
         if (!r->at_end || r->last >= run->simulation->master->time) continue;
-        bough_status end = take_record(run, r);
-        if (!bough_is_ok(&end)) return end;
+        BOUGH_TRY(take_record(run, r));
     }
     return status;
 }

@@ -66,12 +66,10 @@ static bool read_all(bough_arena *arena, FILE *file, stored_frame *f) {
 
 static bough_status read_frame(bough_arena *arena, const char *folder, const char *name, stored_frame *f) {
     FILE *file;
-    bough_status status = bough_report_open(folder, name, &file);
-    if (!bough_is_ok(&status)) return status;
-    if (!file) return damaged(folder, name);
-    bool ok = read_all(arena, file, f);
-    fclose(file);
-    return ok ? status : damaged(folder, name);
+    BOUGH_TRY(bough_report_open(folder, name, &file));
+    bool good = file && read_all(arena, file, f);
+    if (file) fclose(file);
+    return good ? bough_ok() : damaged(folder, name);
 }
 
 // The next frame of the list.
@@ -145,11 +143,9 @@ typedef struct drawing {
     FILE *svg;
 } drawing;
 
-static bough_vec3 row(const double *x, int i) { return bough_v3(x[3 * i], x[3 * i + 1], x[3 * i + 2]); }
+static bough_vec3 point(const drawing *d, int i) { return bough_v3_load(d->frame->point + 3 * i); }
 
-static bough_vec3 point(const drawing *d, int i) { return row(d->frame->point, i); }
-
-static double moment(const drawing *d, int i) { return bough_norm(row(d->frame->moment, i)); }
+static double moment(const drawing *d, int i) { return bough_norm(bough_v3_load(d->frame->moment + 3 * i)); }
 
 // The rod from point `at` to `end`, straight on from its first segment.
 static bough_vec3 straight_end(const drawing *d, int at, int end) {

@@ -83,18 +83,17 @@ enum { FORMAT = 4, LEAST = -32768, STEPS = 65535 };
 // Values of a channel beyond this have no scale in single precision.
 static const double most_value = 1e30;
 
-typedef struct span {
-    double low, high;
-} span;
+typedef struct packed {
+    double low, high;    // of its values
+    float scale, offset; // a value is stored as round(scale value + offset)
+} packed;
 
 typedef struct packer {
     const bough_binary_def *def;
     int n; // channels
     bough_rows *in;
-    span *range;   // (n)
-    float *scale;  // (n) a value is stored as round(scale value + offset)
-    float *offset; // (n)
-    double start;  // of the first row [s]
+    packed *channel; // (n)
+    double start;    // of the first row [s]
     int32_t rows;
 } packer;
 
@@ -126,8 +125,8 @@ static bough_status measure(packer *p) {
         for (int k = 0; k < p->n; k++) {
             double x = p->in->value[1 + k];
             BOUGH_TRY(check_value(p, k));
-            if (row == 0 || x < p->range[k].low) p->range[k].low = x;
-            if (row == 0 || x > p->range[k].high) p->range[k].high = x;
+            if (row == 0 || x < p->channel[k].low) p->channel[k].low = x;
+            if (row == 0 || x > p->channel[k].high) p->channel[k].high = x;
         }
         p->rows = (int32_t)row + 1;
     }
@@ -137,11 +136,12 @@ static bough_status measure(packer *p) {
 // A range is widened by what rounding to single precision does to its ends, so that they fit.
 static void choose_scales(packer *p) {
     for (int k = 0; k < p->n; k++) {
-        double low = p->range[k].low, high = p->range[k].high;
+        packed *c = &p->channel[k];
+        double low = c->low, high = c->high;
         double margin = (double)FLT_EPSILON * fmax(fabs(low), fabs(high));
         double width = fmax(high - low + 2 * margin, 1e-30);
-        p->scale[k] = (float)(STEPS / width);
-        p->offset[k] = (float)(LEAST - (low - margin) * (double)p->scale[k]);
+        c->scale = (float)(STEPS / width);
+        c->offset = (float)(LEAST - (low - margin) * (double)c->scale);
     }
 }
 
@@ -171,8 +171,8 @@ static void put_head(const packer *p, FILE *out) {
     bough_put_bytes(out, (uint64_t)p->rows, 4);
     bough_put_double(out, p->start);
     bough_put_double(out, p->def->interval);
-    for (int k = 0; k < p->n; k++) bough_put_float(out, p->scale[k]);
-    for (int k = 0; k < p->n; k++) bough_put_float(out, p->offset[k]);
+    for (int k = 0; k < p->n; k++) bough_put_float(out, p->channel[k].scale);
+    for (int k = 0; k < p->n; k++) bough_put_float(out, p->channel[k].offset);
     bough_put_bytes(out, strlen(p->def->title), 4);
     fprintf(out, "%s%-*s", p->def->title, width, "Time");
     for (int k = 0; k < p->n; k++) fprintf(out, "%-*s", width, c->channel[k].name);
@@ -186,7 +186,7 @@ static bough_status put_rows(packer *p, FILE *out) {
     for (int32_t row = 0; row < p->rows; row++) {
         BOUGH_TRY(read_row(p, bough_rows_line(p->in), row));
         for (int k = 0; k < p->n; k++) {
-            double at = p->in->value[1 + k] * (double)p->scale[k] + (double)p->offset[k];
+            double at = p->in->value[1 + k] * (double)p->channel[k].scale + (double)p->channel[k].offset;
             long step = lround(fmin(fmax(at, LEAST), LEAST + STEPS));
             bough_put_bytes(out, (uint64_t)step, 2);
         }
@@ -202,9 +202,7 @@ static bough_status pack(bough_arena *arena, void *self) {
     BOUGH_TRY(bough_rows_open(arena, folder, &p->in));
     if (!p->in || p->in->n != p->n + 1)
         return bough_fail(BOUGH_IO, "cannot read '%.200s/channels.out' again", folder);
-    p->range = bough_arena_take(arena, (size_t)p->n * sizeof *p->range);
-    p->scale = bough_arena_take(arena, (size_t)p->n * sizeof *p->scale);
-    p->offset = bough_arena_take(arena, (size_t)p->n * sizeof *p->offset);
+    p->channel = bough_arena_take(arena, (size_t)p->n * sizeof *p->channel);
     BOUGH_TRY(measure(p));
     choose_scales(p);
     BOUGH_TRY(bough_folder_open(folder, "channels.outb", path, &out));
