@@ -14,6 +14,13 @@ typedef struct bough_section_station {
     double inertia[4];    // Ixx Iyy Ixy Izz about the reference axis per length [kg m]
 } bough_section_station;
 
+// Inertia about the mass centre: central (Ixx Iyy Ixy Izz) [kg m].
+void bough_section_central(const bough_section_station *x, double central[4]);
+
+// The section between two stations, at a fraction of the way to the upper one.
+bough_section_station bough_section_between(const bough_section_station *low,
+                                            const bough_section_station *high, double fraction);
+
 typedef struct bough_section_table {
     const char *name;
     int n_station; // 1: a uniform rod of `length` along z

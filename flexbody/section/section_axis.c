@@ -104,6 +104,11 @@ bough_section_station bough_section_of(bough_section_place p) {
     return x;
 }
 
+bough_section_station bough_section_between(const bough_section_station *low,
+                                            const bough_section_station *high, double fraction) {
+    return bough_section_of((bough_section_place){low, high, fraction});
+}
+
 bough_section_station bough_section_at(const bough_section_axis *a, double s) {
     return bough_section_of(bough_section_find(a, s));
 }

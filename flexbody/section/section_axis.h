@@ -15,7 +15,7 @@ typedef struct bough_section_axis {
 
 void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table);
 
-// Where s lies between two stations, and what is linear between them there.
+// Where s lies between two stations.
 typedef struct bough_section_place {
     const bough_section_station *low, *high;
     double fraction; // of the way to the upper station
@@ -30,9 +30,6 @@ static inline double bough_section_mix(double fraction, double low, double high)
 bough_section_station bough_section_of(bough_section_place place);
 bough_section_station bough_section_at(const bough_section_axis *a, double s);
 bough_quaternion bough_section_rotation(const bough_section_axis *a, bough_section_place place);
-
-// Its inertia about the mass centre: central (Ixx Iyy Ixy Izz) [kg m].
-void bough_section_central(const bough_section_station *x, double central[4]);
 
 // A point of a quadrature on the axis.
 typedef struct bough_section_point {

@@ -117,18 +117,11 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
 static void check_section_inertia(bough_schema_reader *r, const bough_node *node,
                                   const bough_section_station *s) {
     static const char *const moments[] = {"Ixx - m cy^2", "Iyy - m cx^2", "Izz - m (cx^2 + cy^2)"};
-    double cx = s->centre[0], cy = s->centre[1], m = s->mass;
-    double central[9] = {s->inertia[0] - m * cy * cy,
-                         s->inertia[2] + m * cx * cy,
-                         0,
-                         s->inertia[2] + m * cx * cy,
-                         s->inertia[1] - m * cx * cx,
-                         0,
-                         0,
-                         0,
-                         s->inertia[3] - m * (cx * cx + cy * cy)};
-    int row = row_without_pivot(central, 3);
-    if (row < 3) refuse_row(r, node, "the inertia about the mass centre", moments[row], central[4 * row]);
+    double x[4];
+    bough_section_central(s, x);
+    const double matrix[9] = {x[0], x[2], 0, x[2], x[1], 0, 0, 0, x[3]};
+    int row = row_without_pivot(matrix, 3);
+    if (row < 3) refuse_row(r, node, "the inertia about the mass centre", moments[row], matrix[4 * row]);
 }
 
 // field: the station
@@ -340,26 +333,11 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
 
 // Its table begins and ends between the stations of the given one.
 
-static double between(double f, double a, double b) { return (1 - f) * a + f * b; }
-
-static void blend(double f, const double *a, const double *b, int n, double *to) {
-    for (int k = 0; k < n; k++) to[k] = between(f, a[k], b[k]);
-}
-
-// The section at a span, linear between the stations.
 static bough_section_station section_at(const bough_scene_structure *s, double span) {
     int k = 0;
     while (k < s->n_station - 2 && span > s->station[k + 1].def.position.z) k++;
     const bough_section_station *a = &s->station[k].def, *b = &s->station[k + 1].def;
-    bough_section_station c;
-    double f = (span - a->position.z) / (b->position.z - a->position.z);
-    c.position = bough_add(bough_scale(1 - f, a->position), bough_scale(f, b->position));
-    blend(f, a->stiffness, b->stiffness, 21, c.stiffness);
-    blend(f, a->centre, b->centre, 2, c.centre);
-    blend(f, a->inertia, b->inertia, 4, c.inertia);
-    c.twist = between(f, a->twist, b->twist);
-    c.mass = between(f, a->mass, b->mass);
-    return c;
+    return bough_section_between(a, b, (span - a->position.z) / (b->position.z - a->position.z));
 }
 
 // Stations from one span to another, positions from the first.
