@@ -14,8 +14,7 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
 static double spin_of(const bough_simulation *s, int hub) {
     const bough_frame frame = {.link = hub, .placement = bough_transform_identity()};
     bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
-    bough_vec3 w = bough_tree_frame_twist(s->view, &frame).angular;
-    return bough_dot(bough_mat3_mul(bough_tree_frame_pose(s->view, &frame).rotation, w), shaft);
+    return bough_dot(bough_tree_frame_velocity(s->view, &frame).angular, shaft);
 }
 
 // Inserts a blade by azimuth.

@@ -303,7 +303,7 @@ static const char *name_tip(const bough_simulation *s, int k) {
 static double hub_spin(const bough_simulation *s) {
     int hub = s->scene->body[s->scene->turbine.blade[0]].joint.parent;
     bough_vec3 velocity = bough_tree_frame_velocity(s->view, &s->tree->bodies[hub]).angular;
-    return bough_dot(velocity, bough_simulation_rotor(s).axis);
+    return bough_dot(velocity, bough_simulation_joint_axis(s, s->scene->turbine.rotor));
 }
 
 static void sample_aero(void *self, double t, double *value) {
