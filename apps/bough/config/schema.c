@@ -6,7 +6,7 @@
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
-// Without those of values that do not increase, which leave checks across keys possible.
+// Values that do not increase are not counted: checks across keys are possible in spite of them.
 static int errors_so_far(const bough_schema_reader *r) {
     return r->errors->n + r->errors->dropped - r->out_of_order;
 }

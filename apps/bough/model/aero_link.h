@@ -18,10 +18,10 @@ bool bough_aero_link_turbulence(const bough_scene *scene, bough_wind_iec_def *de
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
 // The same, but dynamic inflow and stall continue from the last sample to this one and to the next. `moved`
-// false: time, motion and wind are those of the last such call, whose inductions in balance hold.
+// false: time, motion and wind, and so the induction in equilibrium, are those of the last such call.
 void bough_aero_link_continue(bough_aero_link *link, double t, bool moved);
 
-// Inflow and stall continue alike, and the loads stay as they are.
+// Only continues dynamic inflow and stall in this way: the loads on the blades stay as they are.
 void bough_aero_link_remember(bough_aero_link *link, double t, bool moved);
 
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).

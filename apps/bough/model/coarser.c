@@ -28,8 +28,8 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
     }
 }
 
-enum { FEW_SEGMENTS = 9 };   // fewer: errors of half of them do not fall with their order
-enum { LEAST_SEGMENTS = 8 }; // of a finer rod: one or two cost as much time
+enum { FEW_SEGMENTS = 9 };   // with fewer, half of them are too coarse for errors to fall with their order
+enum { LEAST_SEGMENTS = 8 }; // of a finer rod: fewer save no time
 // A blade of eight segments in air at half the rate can be unstable. Below SOME_SEGMENTS no smaller number
 // differs by enough.
 enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
@@ -174,11 +174,12 @@ bool bough_coarser_steps_alone(const bough_scene *scene) {
     return is_one_system(scene) && scene->simulation.master.rtol < tight && !mesh && !sampled;
 }
 
-// A quarter, of an order between 2 and 3, in air whose loads follow the motion; two fifths without air, where
-// vibrations stay whose phases and amplitudes err at a lower order; three tenths beside a still larger
-// tolerance of rigid bodies. What a coupling errs by is the whole difference to a solution without one: all
-// of it by a coupling that is explicit, repeats steps or is of order 1, as any is across a jump within a
-// macro step, or of fixed steps; half otherwise, where steps and mesh take part.
+// All bodies as one system: a quarter in air whose loads follow the motion, as for an order between 2 and 3;
+// two fifths without air, where vibrations do not decay and their phases and amplitudes err at a lower order;
+// three tenths for rigid bodies, beside a companion of a still larger tolerance. A coupling scheme: the
+// companion has no error of coupling, so that this error is the whole difference. It is taken as a whole for
+// fixed steps and for a scheme that is explicit, repeats steps or is of order 1, as any is across a jump
+// within a macro step; otherwise by half, as steps and mesh are a part of the difference.
 static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);

@@ -383,7 +383,7 @@ static void pass_jumps(bough_companion *c) {
 }
 
 static void compare(bough_companion *c) {
-    // the rarer sample is held longer; at an event, between two steps, that of the run
+    // of two rates the lower one holds its samples longer; at an event, between two macro steps, the run does
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     const bough_companion_row *row = &c->row[c->present];
     bool at_event = c->run->master->at_event;

@@ -161,11 +161,11 @@ static void turn_yaw(const bough_control_link *l, const bough_scene_event *event
                      (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
 }
 
-// Later orders take precedence: a stop over a change of pitch, the fault of one blade over demands for all
-// blades.
-enum { ORDERS = 3 };
+// Events of higher priority change the demand last: a stop after a change of pitch, the fault of one blade
+// after demands for all blades.
+enum { PRIORITIES = 3 };
 
-static int order_of(const bough_scene_event *event) {
+static int priority_of(const bough_scene_event *event) {
     return event->blade > 0 ? 2 : event->kind != BOUGH_SCENE_PITCH_TO;
 }
 
@@ -204,9 +204,9 @@ static void change_demand(bough_control_link *l, const bough_discon_sensed *sens
         demand->torque = 0;
         for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = sensed->pitch[b];
     }
-    for (int order = 0; order < ORDERS; order++) {
+    for (int priority = 0; priority < PRIORITIES; priority++) {
         for (int i = 0; i < l->control->n_event; i++) {
-            if (l->event[i].happened != 0 && order_of(&l->control->event[i]) == order)
+            if (l->event[i].happened != 0 && priority_of(&l->control->event[i]) == priority)
                 change(l, i, sensed, demand);
         }
     }
@@ -267,7 +267,7 @@ static void nacelle_motion(const bough_simulation *s, double motion[4]) {
 // Directions of nacelle and wind, and accelerations of the nacelle by differences over the last sample.
 static void sense_nacelle(bough_control_link *l, double t, bough_discon_sensed *x) {
     const bough_simulation *s = l->simulation;
-    bough_vec3 axis = bough_simulation_rotor(s).axis;
+    bough_vec3 axis = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
     double motion[4], *last = l->now.nacelle;
     x->heading = atan2(axis.y, axis.x);
     if (s->aero != NULL) {

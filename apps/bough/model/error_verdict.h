@@ -36,8 +36,8 @@ bough_error_verdict bough_error_verdict_of(const bough_companion *c, bool motion
 // Up to `most` channels that count, with the largest relative errors first: their number.
 int bough_error_worst(const bough_companion *c, int most, int *channel);
 
-// The error of a channel in words, as "0.2 m, 0.03 of its range". A range of rounding is none to measure by:
-// an error beyond ten ranges is said to be so.
+// The error of a channel in words, as "0.2 m, 0.03 of its range"; above ten ranges, which are then mostly
+// rounding, only that it is more.
 void bough_error_size(const bough_companion *c, int channel, char text[BOUGH_ERROR_SIZE]);
 
 // Records which errors are first noticeable at t [s].

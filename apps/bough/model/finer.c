@@ -1,10 +1,10 @@
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/validity.h"
 
-// How long it stands beside the run from the start, or from a jump on, and its largest work.
+// How long the finer solution runs beside the run from the start, or from a jump on, and its most work.
 typedef struct extent {
-    int steps;     // macro steps; where an error grows without air, it goes on
-    double part;   // work relative to that of run and companion, extrapolated to the end
+    int steps;     // macro steps; more where an error grows without air
+    double part;   // work over that of run and companion, extrapolated to the end
     double little; // work that is never too much, once for the start and once for all jumps [µs]
 } extent;
 

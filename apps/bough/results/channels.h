@@ -71,8 +71,7 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     __attribute__((format(printf, 3, 4)));
 
 // Describes the channel added last: its meaning (not copied), which component of a vector it is (1, 2, 3; 0:
-// a scalar), and whether its values belong to the last sample of the air or the control; such a channel of
-// motion is one of the air.
+// a scalar), and whether its values belong to the last sample of the air or the control.
 void bough_channels_describe(bough_channels *list, const char *meaning, int component,
                              bough_sampling sampled);
 
