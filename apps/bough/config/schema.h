@@ -103,7 +103,7 @@ typedef struct bough_schema_base {
     bool absolute;                  // its path, or that of a file between it and the first one, is absolute
 } bough_schema_base;
 
-// Reads a file named `path` relative to the directory of the scene; see BOUGH_KEY_FILE.
+// What the readers of values share: memory and errors, where files are named from, the place that is read.
 struct bough_schema_reader {
     bough_arena *arena;
     bough_errors *errors;

@@ -164,7 +164,7 @@ typedef struct bough_companion_row {
     bool air_sampled;  // the air among them
     double missed_air; // largest error of the air's loads between two samples [1]
     double work;       // so far (bough_simulation_work)
-    double *value;     // (channels->count), where the time counts
+    double *value;     // (channels->count); sampled from simulation.output.from on
 } bough_companion_row;
 
 typedef struct bough_companion {

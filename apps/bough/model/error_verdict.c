@@ -20,7 +20,7 @@ bool bough_error_is_motion(const bough_channel *channel) {
 
 // -- ranges ---------------------------------------------------------------------------------------
 
-// Without the calls that fmin and fmax take: every comparison finds the ranges of all channels.
+// fmin and fmax would be calls, and every comparison of run and companion finds the ranges of all channels.
 static double smaller(double a, double b) { return b < a ? b : a; }
 static double larger(double a, double b) { return b > a ? b : a; }
 

@@ -22,8 +22,8 @@ static const double least_jump = 0.1;
 // Whether the run errs by a coupling or by fixed steps, whatever its tolerance.
 static bool errs_at_any_tolerance(const bough_scene *scene) { return bough_coarser_ratio(scene, scene) == 1; }
 
-// Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A third copy of a
-// library would write to the companion's file.
+// Whether it is needed: a tight tolerance resolves all vibrations, unless air is sampled. A controller's
+// library is not loaded a third time: it would write to the companion's files.
 static bool is_wanted(const bough_scene *scene) {
     static const double tight = 1e-5;
     double rtol = fmax(scene->simulation.master.rtol, bough_scene_loosest_rtol(scene));

@@ -43,7 +43,7 @@ int bough_picture_letters(const char *text) {
 }
 
 // The palette of Okabe and Ito without yellow, which is too pale on white, and with grey in place of black,
-// which is none on dark pages.
+// which does not show on dark pages.
 static const char *colour_of(int k) {
     static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                           "#E69F00", "#56B4E9", "#7A7A7A"};

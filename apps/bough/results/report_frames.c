@@ -147,7 +147,7 @@ static bough_vec3 point(const drawing *d, int i) { return bough_v3_load(d->frame
 
 static double moment(const drawing *d, int i) { return bough_norm(bough_v3_load(d->frame->moment + 3 * i)); }
 
-// The rod from point `at` to `end`, straight on from its first segment.
+// Where the rod of points `at` to `end` would end if it went straight on from its first segment.
 static bough_vec3 straight_end(const drawing *d, int at, int end) {
     double length = 0;
     for (int i = at + 1; i < end; i++) length += bough_norm(bough_sub(point(d, i), point(d, i - 1)));
