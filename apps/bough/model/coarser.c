@@ -217,11 +217,12 @@ typedef struct looser {
 
 static const double loosest = 0.02; // tolerance
 
-// If the error is the whole difference, the part of the steps must be small: once or twice the run's own
-// error beside an explicit coupling; a few times beside a finer mesh, whose companion would otherwise take as
-// long as the run, and more where a tight tolerance leaves the error to the mesh. Otherwise it is a multiple,
-// of which the run's error is a quarter. Integrators of a tight tolerance have a high order, and the end of
-// each macro step cuts one of their steps short.
+// Where the run's error is taken as the whole difference, the steps of the companion must err little: up to
+// twice as much as the run beside an explicit coupling; a few times as much beside a finer mesh, which would
+// otherwise cost as much as the run, and more at a tight tolerance, where the mesh causes the error.
+// Elsewhere they err by a multiple, of which the run's error is a quarter. At a tight tolerance integrators
+// have a high order, and each end of a macro step cuts one of their steps short: macro steps are then four
+// times as long.
 static looser looser_of(const bough_scene *scene) {
     double beside_mesh = fmax(12, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
     if (some_finer(scene)) return (looser){beside_mesh, 2, 2};

@@ -216,8 +216,8 @@ static double stale(const bough_companion *c, int i) {
     return held ? c->ratio_held * change_of(c, i) : 0;
 }
 
-// Whether an error is noticeable and a quarter of what the channel's is so far. Forces of a scene at rest
-// differ by rounding.
+// Whether an error is noticeable and more than a quarter of the channel's largest so far; not in a scene at
+// rest, whose forces differ by rounding.
 static bool is_large(const bough_companion *c, int i, double error) {
     double accuracy = c->run->scene->simulation.accuracy;
     return error > 0.25 * c->error[i] && error > 0.1 * accuracy * bough_error_range(c, i) &&
