@@ -45,13 +45,6 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     return bough_ok();
 }
 
-// Tables of the scene in the rotor's form.
-typedef struct tables {
-    bough_polar_def *polar;
-    bough_station_def *station;
-    bough_mat3 *rotation;
-} tables;
-
 // Length of the undeformed axis from the root to z, which is z itself for a straight blade.
 static double arc_length(const bough_rod_def *mesh, int n_vertex, double z) {
     int i = 0;
@@ -61,28 +54,20 @@ static double arc_length(const bough_rod_def *mesh, int n_vertex, double z) {
     return z + excess + (next - excess) * bough_clamp((z - from) / (to - from), 0, 1);
 }
 
-static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
-    const bough_scene_aero *aero = &l->simulation->scene->aero;
-    t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
-    t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
-    t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
-    for (int k = 0; k < aero->polars.n_polar; k++) {
-        const bough_scene_polar *from = &aero->polars.polar[k];
+// The scene's polars as the rotor has them.
+static const bough_polar_def *take_polars(bough_arena *arena, const bough_scene_polars *polars) {
+    bough_polar_def *polar = bough_arena_take(arena, (size_t)polars->n_polar * sizeof *polar);
+    for (int k = 0; k < polars->n_polar; k++) {
+        const bough_scene_polar *from = &polars->polar[k];
         double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
         for (int i = 0; i < from->n_row; i++) {
             const bough_scene_polar_row *r = &from->row[i];
             const double values[4] = {r->alpha * (1 / BOUGH_DEGREE), r->cl, r->cd, r->cm};
             memcpy(row + 4 * i, values, sizeof values);
         }
-        t->polar[k] = (bough_polar_def){from->n_row, row, from->indicial};
+        polar[k] = (bough_polar_def){from->n_row, row, from->indicial};
     }
-    for (int k = 0; k < aero->blade.n_station; k++) {
-        t->station[k] = aero->blade.station[k].def;
-        t->station[k].span = arc_length(&l->beam[0]->def, l->n_vertex, t->station[k].span);
-    }
-    for (int i = 0; i < l->n_vertex; i++) {
-        t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
-    }
+    return polar;
 }
 
 static double rotor_radius(const bough_scene_aero *aero) {
@@ -133,9 +118,17 @@ static bough_wind_def wind_def(const bough_scene *scene) {
     return def;
 }
 
-static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
+static bough_rotor_def rotor_def(bough_arena *arena, const bough_aero_link *l) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
     const bough_rod_def *mesh = &l->beam[0]->def;
+    size_t n_station = (size_t)aero->blade.n_station, n_vertex = (size_t)l->n_vertex;
+    bough_station_def *station = bough_arena_take(arena, n_station * sizeof *station);
+    bough_mat3 *rotation = bough_arena_take(arena, n_vertex * sizeof *rotation);
+    for (size_t k = 0; k < n_station; k++) {
+        station[k] = aero->blade.station[k].def;
+        station[k].span = arc_length(mesh, l->n_vertex, station[k].span);
+    }
+    for (size_t i = 0; i < n_vertex; i++) rotation[i] = bough_rotation_matrix(mesh->rotation[i]);
     bough_rotor_def def = bough_rotor_def_default();
     def.n_blade = l->n_blade;
     def.density = aero->air_density;
@@ -151,13 +144,13 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.wind = wind_def(l->simulation->scene);
     if (aero->tower.node != NULL) def.tower = aero->tower.def;
     def.n_polar = aero->polars.n_polar;
-    def.polar = t->polar;
+    def.polar = take_polars(arena, &aero->polars);
     def.n_station = aero->blade.n_station;
-    def.station = t->station;
+    def.station = station;
     def.n_vertex = l->n_vertex;
     def.vertex_span = mesh->span;
     def.vertex_position = mesh->position;
-    def.vertex_rotation = t->rotation;
+    def.vertex_rotation = rotation;
     return def;
 }
 
@@ -392,11 +385,9 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     const bough_scene_aero *aero = &simulation->scene->aero;
     if (aero->node == NULL) return bough_ok();
     bough_aero_link *l = bough_arena_take(arena, sizeof *l);
-    tables t;
     l->simulation = simulation;
     BOUGH_TRY(take_blades(arena, l));
-    take_tables(arena, l, &t);
-    bough_rotor_def def = rotor_def(l, &t);
+    bough_rotor_def def = rotor_def(arena, l);
     bough_status status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
     const bough_node *file = bough_node_find(aero->wind.node, "file");

@@ -6,13 +6,9 @@
 
 __attribute__((format(printf, 3, 4))) static void warn(const bough_node *at, FILE *stream, const char *format,
                                                        ...) {
-    char place[300];
-    va_list arguments;
-    va_start(arguments, format);
-    fprintf(stream, "%swarning: ", bough_scene_place(at, place, sizeof place));
-    vfprintf(stream, format, arguments);
-    va_end(arguments);
-    fputc('\n', stream);
+    char place[300], text[600];
+    BOUGH_PRINT(text, format);
+    fprintf(stream, "%swarning: %s\n", bough_scene_place(at, place, sizeof place), text);
 }
 
 // -- bodies ---------------------------------------------------------------------------------------
