@@ -215,9 +215,12 @@ static void add_spread(const bough_rod_def *def, int i, double spread, bough_ver
     add_offsets(vertex[i].inertia, spread, along, along);
     double left = def->span[middle] - def->span[middle - 1],
            right = def->span[middle + 1] - def->span[middle];
-    vertex[middle - 1].mass -= spread / (left * (left + right));
-    vertex[middle].mass += spread / (left * right);
-    vertex[middle + 1].mass -= spread / (right * (left + right));
+    const double mass[3] = {-spread / (left * (left + right)), spread / (left * right),
+                            -spread / (right * (left + right))};
+    for (int k = 0; k < 3; k++) {
+        vertex[middle - 1 + k].mass += mass[k];
+        vertex[middle - 1 + k].balance += mass[k];
+    }
 }
 
 static bool positive(const bough_vertex_inertia *v) {

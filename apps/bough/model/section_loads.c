@@ -26,9 +26,16 @@ static bough_mat3 vertex_axes(const bough_section_loads *x, int i) {
     return bough_rotation_matrix(bough_section_loads_rotation(x, i));
 }
 
+// The force of a segment, with what the balancing masses beyond it take from it.
+static bough_vec3 segment_force(const bough_section_loads *x, int i) {
+    return bough_add(segment_row(x, i, 0), x->balance[i].force);
+}
+
 void bough_section_loads_linear(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
-    moment[0] = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
-    moment[1] = bough_scale(-1, bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6)));
+    bough_vec3 left = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
+    bough_vec3 right = bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6));
+    moment[0] = bough_add(left, x->balance[i].moment);
+    moment[1] = bough_sub(x->balance[i + 1].moment, right);
 }
 
 // The axes of the section at a fraction of a segment's length.
@@ -45,7 +52,7 @@ static double segment_length(const bough_section_loads *x, int i) {
 static bough_section_load middle_load(const bough_section_loads *x, int i) {
     bough_vec3 moment[2];
     bough_section_loads_linear(x, i, moment);
-    return (bough_section_load){segment_row(x, i, 0), bough_between(moment[0], moment[1], 0.5)};
+    return (bough_section_load){segment_force(x, i), bough_between(moment[0], moment[1], 0.5)};
 }
 
 // -- force and torsional moment -------------------------------------------------------------------
@@ -138,14 +145,14 @@ static bough_vec3 chord(const bough_section_loads *x, int i) {
 // Second derivative of the moment, the mean over the neighbours that no concentrated force separates;
 // `curved`: the part that the forces have as the chords turn.
 static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_vec3 *curved) {
-    bough_vec3 loaded = {0, 0, 0}, force = segment_row(x, i, 0);
+    bough_vec3 loaded = {0, 0, 0}, force = segment_force(x, i);
     int count = 0;
     *curved = loaded;
     for (int side = -1; side <= 1; side += 2) {
         int next = i + side;
         if (next < 0 || next >= x->beam->def.n_segment || x->kink[i + (side > 0)]) continue;
         double distance = side * (segment_length(x, i) + segment_length(x, next)) / 2;
-        bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_row(x, next, 0);
+        bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_force(x, next);
         bough_vec3 along = bough_between(chord(x, i), chord(x, next), 0.5);
         bough_vec3 change = bough_cross(bough_sub(other, force), along);
         loaded = bough_axpy(1 / distance, change, loaded);
@@ -201,7 +208,33 @@ bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_s
                                                const bough_beam *beam) {
     bough_section_loads x = {.simulation = s, .beam = beam, .kink = find_kinks(arena, s->scene, beam)};
     bough_rod_scratch_init(&x.scratch, arena, beam->mesh);
+    x.balance = bough_arena_take(arena, ((size_t)beam->mesh->n_segment + 1) * sizeof *x.balance);
     return x;
+}
+
+// theory (120): b of moving vertex i. At an end that carries bodies, whose forces the vertex does not
+// contain, that of its neighbour stands for it.
+static bough_vec3 balance_force(const bough_section_loads *x, int i) {
+    const bough_rod_model *m = x->beam->mesh;
+    int v = i > m->n ? m->n : i;
+    const double *load = x->scratch.load + v;
+    bough_vec3 force = bough_v3(load[0], load[m->stride], load[2 * m->stride]);
+    force = bough_sub(force, segment_row(x, v - 1, 0));
+    if (v < m->n_segment) force = bough_add(force, segment_row(x, v, 0));
+    return bough_scale(m->vertex[i].balance / m->vertex[v].mass, force);
+}
+
+static void find_balance(bough_section_loads *x) {
+    int n = x->beam->mesh->n_segment;
+    bough_section_load sum = {{0, 0, 0}, {0, 0, 0}};
+    x->balance[n] = sum;
+    for (int i = n; i > 0; i--) {
+        bough_vec3 arm =
+            bough_sub(bough_section_loads_position(x, i), bough_section_loads_position(x, i - 1));
+        sum.force = bough_add(sum.force, balance_force(x, i));
+        sum.moment = bough_add(sum.moment, bough_cross(arm, sum.force));
+        x->balance[i - 1] = sum;
+    }
 }
 
 bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
@@ -211,6 +244,7 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), &x->scratch);
     bough_rod_load(m, beam->loads, t, &x->scratch);
     bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    find_balance(x);
     double w[BOUGH_ROD_MOST_OUTPUTS];
     bough_simulation_accelerate(s, t);
     bough_simulation_root(s, beam, t, w);
