@@ -97,10 +97,10 @@ bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self
 
 // -- blocks ---------------------------------------------------------------------------------------
 
-// Zeroed memory for a large matrix in whole large pages, which cause fewer page faults than small ones. *size
-// [bytes]: what is needed, then what is mapped. NULL: the system has none.
+// Zeroed memory that begins with a large page. *size [bytes]: what is needed, then what is mapped. NULL: the
+// system has none.
 static void *map_pages(size_t *size) {
-#if defined MADV_HUGEPAGE && !defined __SANITIZE_ADDRESS__ // which watches malloc
+#ifndef __SANITIZE_ADDRESS__ // which watches malloc
     size_t wanted = (*size + PAGE - 1) / PAGE * PAGE, all = wanted + PAGE;
     char *from = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (from == MAP_FAILED) return NULL;
@@ -108,7 +108,6 @@ static void *map_pages(size_t *size) {
     size_t before = (PAGE - (size_t)from % PAGE) % PAGE;
     if (before > 0) munmap(from, before);
     if (before < PAGE) munmap(from + before + wanted, PAGE - before);
-    (void)madvise(from + before, wanted, MADV_HUGEPAGE);
     *size = wanted;
     return from + before;
 #else
@@ -117,19 +116,19 @@ static void *map_pages(size_t *size) {
 #endif
 }
 
-// A large block behind others in pages that are mapped, *mapped 0, or in new ones: many at once, because the
-// system zeroes each as a whole where it is used. NULL: the system has none.
+// A large block behind others in pages that are mapped, *mapped 0, or in new ones. NULL: the system has none.
 static void *take_pages(bough_arena *arena, size_t whole, size_t *mapped) {
-    char *start = arena->rest;
-    if (whole <= arena->left) {
-        arena->rest += whole, arena->left -= whole;
-        return start;
-    }
+    bool fits = whole <= arena->left;
     size_t size = whole < MANY ? MANY : whole;
-    start = map_pages(&size);
+    char *start = fits ? arena->rest : map_pages(&size);
     if (!start) return NULL;
-    if (size - whole > arena->left) arena->rest = start + whole, arena->left = size - whole;
-    *mapped = size;
+    size_t left = (fits ? arena->left : size) - whole, before = (size_t)start % PAGE;
+    if (fits || left > arena->left) arena->rest = start + whole, arena->left = left;
+    *mapped = fits ? 0 : size;
+    // large pages cause fewer faults than small ones, but are zeroed as a whole: the last one of a block is
+    // large where the block ends in its last quarter
+    size_t large = (before + whole + PAGE / 4) / PAGE * PAGE;
+    (void)madvise(start - before, large, MADV_HUGEPAGE);
     return start;
 }
 

@@ -1,5 +1,8 @@
 // The arena: alignment, zeroing, work that is left where memory ends, release in reverse order.
+#define _DEFAULT_SOURCE // mincore
 #include "tests/unit/check.h"
+
+#include <sys/mman.h>
 
 TEST(blocks_are_aligned_zeroed_and_apart) {
     check_arena(arena);
@@ -37,6 +40,16 @@ TEST(large_blocks_are_aligned_and_zeroed_also_where_memory_is_used_again) {
 #endif
         bough_arena_destroy(child);
     }
+}
+
+TEST(of_a_large_page_only_the_small_ones_of_a_block_are_taken) {
+    enum { LARGE_PAGE = 2 << 20, SMALL_PAGE = 4096, SIZE = LARGE_PAGE + LARGE_PAGE / 4 };
+    check_arena(arena);
+    char *block = bough_arena_take(arena, SIZE), *behind = block + LARGE_PAGE + LARGE_PAGE / 2;
+    memset(block, 1, SIZE);
+    unsigned char present = 0; // and stays so where malloc has the block
+    (void)mincore(behind - (uintptr_t)behind % SMALL_PAGE, 1, &present);
+    assert_int_equal(present & 1, 0);
 }
 
 TEST(strings_are_copied) {
