@@ -24,7 +24,7 @@ static void destroy_plan(void *plan) {
 static const double NEGLIGIBLE = 1e-3;
 enum { ALIASES = 8 };
 
-enum { BATCH = 16 }; // points whose series are stored together, since they lie side by side in the box
+enum { BATCH = 8 }; // points whose series are stored together, since they lie side by side in the box
 
 // -- spectra --------------------------------------------------------------------------------------
 
@@ -66,7 +66,7 @@ typedef struct maker {
     double step;         // between frequencies [Hz]
     double *amplitude;   // (3 × (n_wave + 1)) of a wave's complex amplitude, half the wave's
     int *order;          // (n_point) points from the middle outwards
-    double *mixed;       // (n_coherent × n_point × 2) complex amplitudes
+    float *mixed;        // (n_coherent × n_point × 2) complex amplitudes; the box has 16 bits
     double *wave;        // (2 × n_point) one wave of all points in `order`, real parts before imaginary ones
     double *factor;      // (n_point × n_point) column-major
     double *distance;    // (points × points) by the distances in steps of the grid [m]
@@ -170,10 +170,10 @@ static void mix_points(maker *m, int wave) {
         }
     }
     // into the order of the grid
-    double *to = m->mixed + 2 * (size_t)n * (size_t)(wave - 1);
+    float *to = m->mixed + 2 * (size_t)n * (size_t)(wave - 1);
     for (int i = 0; i < n; i++) {
-        to[2 * m->order[i]] = real[i];
-        to[2 * m->order[i] + 1] = imaginary[i];
+        to[2 * m->order[i]] = (float)real[i];
+        to[2 * m->order[i] + 1] = (float)imaginary[i];
     }
 }
 
@@ -214,9 +214,9 @@ static void set_waves(maker *m, int component, int point) {
     a[0] = a[1] = a[2 * n + 2] = a[2 * n + 3] = 0;
     // coherent waves first, then those of the point alone
     for (int i = 1; i <= mixed; i++) {
-        const double *from = m->mixed + 2 * ((size_t)m->n_point * (size_t)(i - 1) + (size_t)point);
-        a[2 * i] = from[0];
-        a[2 * i + 1] = from[1];
+        const float *from = m->mixed + 2 * ((size_t)m->n_point * (size_t)(i - 1) + (size_t)point);
+        a[2 * i] = (double)from[0];
+        a[2 * i + 1] = (double)from[1];
     }
     uint64_t stream = random_stream(m, component, point);
 #pragma omp simd
@@ -346,7 +346,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->n_coherent = count_coherent(m);
     m->amplitude = bough_arena_doubles(scratch, 3 * ((size_t)m->n_wave + 1));
     m->order = bough_arena_take(scratch, n * sizeof *m->order);
-    m->mixed = bough_arena_doubles(scratch, 2 * n * (size_t)m->n_coherent + 1);
+    m->mixed = bough_arena_take(scratch, (2 * n * (size_t)m->n_coherent + 1) * sizeof *m->mixed);
     m->wave = bough_arena_doubles(scratch, 2 * n);
     m->factor = bough_arena_doubles(scratch, n * n);
     m->distance = bough_arena_doubles(scratch, n);
