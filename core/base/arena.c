@@ -108,6 +108,7 @@ static void *map_pages(size_t *size) {
     size_t before = (PAGE - (size_t)from % PAGE) % PAGE;
     if (before > 0) munmap(from, before);
     if (before < PAGE) munmap(from + before + wanted, PAGE - before);
+    (void)madvise(from + before, wanted, MADV_NOHUGEPAGE); // also where the system has them everywhere
     *size = wanted;
     return from + before;
 #else
