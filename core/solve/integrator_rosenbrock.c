@@ -29,6 +29,9 @@ static const double turned = 10, noticed = 0.03;
 // If the first step with new tangents has more than this part of the error for which they were renewed, both
 // over the third power of the length, the motion is the cause and not the tangents.
 static const double by_motion = 0.5;
+// The first of long steps, as a part of a macro step: one that passes over the start errs most in stiff
+// forces.
+static const double short_start = 0.05;
 static const double older = 1.1;     // growth of the useful age at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
@@ -38,6 +41,7 @@ typedef struct rosenbrock {
     void *finder;               // its self
     double *weight;             // 1/tolerance of each state (n)
     double step;                // longest [s]
+    double first;               // longest after a start, over the macro step
     int most_steps;             // in a macro step, and after a fifth of them their number is foreseen
     double longest;             // the next step may have [s]
     double factored;            // γh of the factors; 0: none
@@ -103,6 +107,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->find = find_alone;
     m->finder = m;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
+    m->first = options->coarse ? short_start : 1;
     m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     bough_arena_each(arena, n, &m->weight, &m->now.drift, &m->error, &m->now.at);
     bough_arena_each(arena, n, &m->last, &m->ahead, &m->old, &m->fresh);
@@ -249,16 +254,14 @@ static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
         double parts = ceil((t1 - *t) / m->longest * (1 - rounding));
         double h = (t1 - *t) / fmax(parts, 1);
         bool known = n >= m->most_steps / 5;
-        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
+        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun))
             return "too many steps in one macro step, because the vibrations are so fast; damp the rods or take a larger rtol";
-        }
         // a step that fails with old tangents is repeated with new ones
         double error = try_step(m, *t, h, y);
         check_renewal(m, error, h);
-        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
+        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3))
             return "the error test fails down to the smallest step (a segment that turns by more than"
                    " 120°, or a value that overflows)";
-        }
         if (error > 1) {
             shorten(m, h, error);
             continue;
@@ -289,7 +292,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
         m->most_age = UNDAMPED_AGE;
         m->useful = m->kept;
         m->renewed_for = 0;
-        m->longest = m->step;
+        m->longest = fmin(m->step, m->first * (t1 - *t));
     }
     m->drifted = MOST_DRIFTED;
     const char *reason = cross(m, t, t1, y);
