@@ -254,14 +254,16 @@ static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
         double parts = ceil((t1 - *t) / m->longest * (1 - rounding));
         double h = (t1 - *t) / fmax(parts, 1);
         bool known = n >= m->most_steps / 5;
-        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun))
+        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
             return "too many steps in one macro step, because the vibrations are so fast; damp the rods or take a larger rtol";
+        }
         // a step that fails with old tangents is repeated with new ones
         double error = try_step(m, *t, h, y);
         check_renewal(m, error, h);
-        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3))
+        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
             return "the error test fails down to the smallest step (a segment that turns by more than"
                    " 120°, or a value that overflows)";
+        }
         if (error > 1) {
             shorten(m, h, error);
             continue;

@@ -103,6 +103,33 @@ static bool has_short_pulses(const bough_scene *scene) {
     return found;
 }
 
+// The largest speed at which a revolute joint starts, or to which it is driven [rad/s].
+static double fastest_turn(const bough_scene *scene) {
+    double fastest = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_joint *joint = &scene->body[i].joint;
+        const bough_motion_def *given = &joint->motion[0].def;
+        if (joint->kind != BOUGH_JOINT_REVOLUTE) continue;
+        fastest = fmax(fastest, fabs(joint->speeds[0]));
+        if (given->given && given->speed) fastest = fmax(fastest, fmax(fabs(given->from), fabs(given->to)));
+    }
+    return fastest;
+}
+
+enum { MOST_OF_ROPE = 16 }; // segments: the errors of more are small, and twice as many cost most
+
+// Whether tension N, by its weight and the rotation, bends a rod within √(EI/N), a length of less than a
+// segment: errors of half as many segments do not fall with their order.
+static bool is_rope(const bough_scene *scene, int body) {
+    const bough_scene_rod *rod = &scene->body[body].rod;
+    const bough_section_station *root = &rod->structure.station[0].def;
+    double length = bough_scene_arc_length(&rod->structure), h = length / rod->n_segment;
+    double turn = fastest_turn(scene),
+           pull = bough_norm(bough_v3_load(scene->gravity)) + turn * turn * length;
+    double bending = fmin(root->stiffness[15], root->stiffness[18]);
+    return rod->n_segment <= MOST_OF_ROPE && h * h * root->mass * length * pull > bending;
+}
+
 static int least_of(const bough_scene *scene, int body) {
     return bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
 }
@@ -118,7 +145,7 @@ static int own_segments(const bough_scene *scene, int body) {
     int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
     bool modal = blade ? has_modal_blades(scene) : is_modal(scene, body);
-    if (modal || has_short_pulses(scene)) return finer_segments(scene, body);
+    if (modal || has_short_pulses(scene) || is_rope(scene, body)) return finer_segments(scene, body);
     return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
 }
 
