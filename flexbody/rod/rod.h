@@ -39,7 +39,9 @@ typedef struct bough_vertex_inertia {
     double mass;       // [kg]
     bough_vec3 moment; // first moment mζ [kg m]
     double inertia[6]; // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
-    double balance;    // part of the mass that balances inertia given to a neighbour, of any sign [kg]
+    // parts that the sections do not have, theory (120): inertia across the axis [kg m²], and mass [kg] that
+    // balances it, and a neighbour's
+    double added_inertia, added_mass;
 } bough_vertex_inertia;
 
 // The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].

@@ -213,13 +213,14 @@ static void add_spread(const bough_rod_def *def, int i, double spread, bough_ver
     const bough_vec3 along = {0, 0, 1};
     int n = def->n_segment, middle = i == 0 ? 1 : i == n ? n - 1 : i;
     add_offsets(vertex[i].inertia, spread, along, along);
+    vertex[i].added_inertia = spread;
     double left = def->span[middle] - def->span[middle - 1],
            right = def->span[middle + 1] - def->span[middle];
     const double mass[3] = {-spread / (left * (left + right)), spread / (left * right),
                             -spread / (right * (left + right))};
     for (int k = 0; k < 3; k++) {
         vertex[middle - 1 + k].mass += mass[k];
-        vertex[middle - 1 + k].balance += mass[k];
+        vertex[middle - 1 + k].added_mass += mass[k];
     }
 }
 

@@ -26,16 +26,21 @@ static bough_mat3 vertex_axes(const bough_section_loads *x, int i) {
     return bough_rotation_matrix(bough_section_loads_rotation(x, i));
 }
 
-// The force of a segment, with what the balancing masses beyond it take from it.
+// The force of a segment, with what the added masses beyond it take from it.
 static bough_vec3 segment_force(const bough_section_loads *x, int i) {
-    return bough_add(segment_row(x, i, 0), x->balance[i].force);
+    return bough_add(segment_row(x, i, 0), x->lack[i].force);
+}
+
+static bough_vec3 step_between(const bough_section_loads *x, int i) {
+    return bough_sub(bough_section_loads_position(x, i + 1), bough_section_loads_position(x, i));
 }
 
 void bough_section_loads_linear(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
+    const bough_section_load *lack = &x->lack[i];
     bough_vec3 left = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
     bough_vec3 right = bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6));
-    moment[0] = bough_add(left, x->balance[i].moment);
-    moment[1] = bough_sub(x->balance[i + 1].moment, right);
+    moment[0] = bough_add(left, lack->moment);
+    moment[1] = bough_sub(bough_sub(lack->moment, bough_cross(step_between(x, i), lack->force)), right);
 }
 
 // The axes of the section at a fraction of a segment's length.
@@ -138,8 +143,7 @@ static bough_section_load load_between(const bough_section_loads *x, int i, doub
 
 // From the left to the right vertex, per length.
 static bough_vec3 chord(const bough_section_loads *x, int i) {
-    bough_vec3 from = bough_section_loads_position(x, i), to = bough_section_loads_position(x, i + 1);
-    return bough_scale(1 / segment_length(x, i), bough_sub(to, from));
+    return bough_scale(1 / segment_length(x, i), step_between(x, i));
 }
 
 // Second derivative of the moment, the mean over the neighbours that no concentrated force separates;
@@ -208,32 +212,39 @@ bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_s
                                                const bough_beam *beam) {
     bough_section_loads x = {.simulation = s, .beam = beam, .kink = find_kinks(arena, s->scene, beam)};
     bough_rod_scratch_init(&x.scratch, arena, beam->mesh);
-    x.balance = bough_arena_take(arena, ((size_t)beam->mesh->n_segment + 1) * sizeof *x.balance);
+    x.lack = bough_arena_take(arena, (size_t)beam->mesh->n_segment * sizeof *x.lack);
     return x;
 }
 
-// theory (120): b of moving vertex i. At an end that carries bodies, whose forces the vertex does not
-// contain, that of its neighbour stands for it.
-static bough_vec3 balance_force(const bough_section_loads *x, int i) {
-    const bough_rod_model *m = x->beam->mesh;
-    int v = i > m->n ? m->n : i;
-    const double *load = x->scratch.load + v;
-    bough_vec3 force = bough_v3(load[0], load[m->stride], load[2 * m->stride]);
-    force = bough_sub(force, segment_row(x, v - 1, 0));
-    if (v < m->n_segment) force = bough_add(force, segment_row(x, v, 0));
-    return bough_scale(m->vertex[i].balance / m->vertex[v].mass, force);
+// The force on the mass of moving vertex i by loads and segments, per mass: a − g of its mass centre.
+static bough_vec3 acceleration_of(const bough_section_loads *x, int i) {
+    const double *load = x->scratch.load + i;
+    int stride = x->beam->mesh->stride;
+    bough_vec3 force = bough_v3(load[0], load[stride], load[2 * stride]);
+    force = bough_sub(force, segment_row(x, i - 1, 0));
+    if (i < x->beam->mesh->n_segment) force = bough_add(force, segment_row(x, i, 0));
+    return bough_scale(1 / x->beam->mesh->vertex[i].mass, force);
 }
 
-static void find_balance(bough_section_loads *x) {
-    int n = x->beam->mesh->n_segment;
+// theory (120). At an end that carries bodies, whose forces the vertex does not contain, a is extrapolated.
+static void find_lack(bough_section_loads *x) {
+    const bough_rod_model *m = x->beam->mesh;
     bough_section_load sum = {{0, 0, 0}, {0, 0, 0}};
-    x->balance[n] = sum;
-    for (int i = n; i > 0; i--) {
-        bough_vec3 arm =
-            bough_sub(bough_section_loads_position(x, i), bough_section_loads_position(x, i - 1));
-        sum.force = bough_add(sum.force, balance_force(x, i));
-        sum.moment = bough_add(sum.moment, bough_cross(arm, sum.force));
-        x->balance[i - 1] = sum;
+    for (int i = m->n_segment; i > 0; i--) {
+        const bough_vertex_inertia *vertex = &m->vertex[i];
+        int near = i < m->n ? i : m->n, other = near > 1 ? near - 1 : near + 1;
+        if (other <= m->n && (vertex->added_mass != 0 || vertex->added_inertia != 0)) {
+            double from = m->span[near] + m->vertex[near].moment.z / m->vertex[near].mass;
+            double to = m->span[other] + m->vertex[other].moment.z / m->vertex[other].mass;
+            bough_vec3 a = acceleration_of(x, near);
+            bough_vec3 slope = bough_scale(1 / (to - from), bough_sub(acceleration_of(x, other), a));
+            a = bough_axpy(m->span[i] - from, slope, a);
+            sum.force = bough_axpy(vertex->added_mass, a, sum.force);
+            bough_vec3 turn = bough_cross(vertex_axes(x, i).c3, slope);
+            sum.moment = bough_axpy(vertex->added_inertia, turn, sum.moment);
+        }
+        sum.moment = bough_add(sum.moment, bough_cross(step_between(x, i - 1), sum.force));
+        x->lack[i - 1] = sum;
     }
 }
 
@@ -244,7 +255,7 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), &x->scratch);
     bough_rod_load(m, beam->loads, t, &x->scratch);
     bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
-    find_balance(x);
+    find_lack(x);
     double w[BOUGH_ROD_MOST_OUTPUTS];
     bough_simulation_accelerate(s, t);
     bough_simulation_root(s, beam, t, w);

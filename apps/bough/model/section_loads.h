@@ -19,7 +19,7 @@ typedef struct bough_section_loads {
     const bough_beam *beam;
     bool *kink;                   // (n_segment + 1) a concentrated force acts on the vertex
     bough_rod_scratch scratch;    // vertices and segments at the evaluation
-    bough_section_load *balance;  // (n_segment + 1) theory (120), at the vertices, in the body's axes
+    bough_section_load *lack;     // (n_segment) theory (120), at the left vertices, in the body's axes
     bough_section_load root, end; // in the body's axes; end: of a rod that carries bodies
 } bough_section_loads;
 
