@@ -44,11 +44,12 @@ TEST(large_blocks_are_aligned_and_zeroed_also_where_memory_is_used_again) {
 
 TEST(of_a_large_page_only_the_small_ones_of_a_block_are_taken) {
     check_arena(arena);
-    char *block = bough_arena_take(arena, 5 << 19), *behind = block + (3 << 20); // pages of 2 MB and 4 kB
+    char *block = bough_arena_take(arena, 5 << 19); // in pages of 2 MB and 4 kB
     memset(block, 1, 5 << 19);
-    unsigned char present = 0; // and stays so where malloc has the block
-    (void)mincore(behind - (uintptr_t)behind % 4096, 1, &present);
-    assert_int_equal(present & 1, 0);
+#ifndef __SANITIZE_ADDRESS__ // which watches malloc
+    unsigned char present, *behind = (unsigned char *)block + (3 << 20);
+    assert_true(mincore(behind - (uintptr_t)behind % 4096, 1, &present) != 0 || (present & 1) == 0);
+#endif
 }
 
 TEST(strings_are_copied) {
