@@ -29,8 +29,8 @@ static const double turned = 10, noticed = 0.03;
 // If the first step with new tangents has more than this part of the error for which they were renewed, both
 // over the third power of the length, the motion is the cause and not the tangents.
 static const double by_motion = 0.5;
-// The first of long steps, as a part of a macro step: one that passes over the start errs most in stiff
-// forces.
+// A companion's longest first step, over its macro step: a longer one passes over the vibrations of the
+// start and errs most in stiff forces.
 static const double short_start = 0.05;
 static const double older = 1.1;     // growth of the useful age at each renewal, until a step fails again
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative

@@ -109,8 +109,8 @@ static double fastest_growth(const bough_coupling *c, const bough_scheme_options
     return bough_is_ok(&status) ? fmax(s.growth, s.rising) : -1;
 }
 
-// Such a difference, from which on the coupling is taken to cause a growth where the equations of a member
-// are not known: the growth alone may be the member's own.
+// Relative difference of the forces from which on the coupling is taken to cause a growth where the equations
+// of a member are not known: the growth alone may be the member's own.
 static const double unrelated = 0.5;
 
 static bool coupling_grows(const bough_coupling *c, const group *g, double defect, double *growth) {

@@ -118,8 +118,8 @@ static double fastest_turn(const bough_scene *scene) {
 
 enum { MOST_OF_ROPE = 16 }; // segments: the errors of more are small, and twice as many cost most
 
-// Whether tension N, by its weight and the rotation, bends a rod within √(EI/N), a length of less than a
-// segment: errors of half as many segments do not fall with their order.
+// Whether a rod under the tension N of its weight and rotation bends within a length √(EI/N) that is less
+// than a segment: errors of half as many segments do not fall with their order.
 static bool is_rope(const bough_scene *scene, int body) {
     const bough_scene_rod *rod = &scene->body[body].rod;
     const bough_section_station *root = &rod->structure.station[0].def;

@@ -81,7 +81,7 @@ static void pass(bough_validity *v, bough_limit limit, int body, double time, do
     v->limit[limit] = (bough_passing){true, body, time, value};
 }
 
-// The same of a beam, now.
+// Notes that a beam passes a limit at the present time.
 static void pass_beam(bough_simulation *s, bough_limit limit, const bough_beam *beam, double value) {
     pass(s->validity, limit, (int)(beam->body - s->scene->body), s->master->time, value);
 }

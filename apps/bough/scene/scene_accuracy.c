@@ -66,7 +66,7 @@ static void choose_master(bough_scene *scene) {
 
 // -- mesh -----------------------------------------------------------------------------------------
 
-// Eights of segments: they are computed eight at a time. The force at a rod's root has order 2.
+// Segments over eight, since eight are computed at a time. The force at a rod's root has order 2.
 static const double usual_lanes = 4;
 
 // A blade bends in shorter waves where it is slender: three quarters as many graded segments are as accurate.
