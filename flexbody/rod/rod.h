@@ -34,6 +34,11 @@ enum {
 // Offsets of the state's parts, in components.
 enum { BOUGH_ROD_X = 0, BOUGH_ROD_P = 3, BOUGH_ROD_U = 7, BOUGH_ROD_W = 10 };
 
+// Mass on the axis [kg], its first [kg m] and second moment [kg m²] along it.
+typedef struct bough_axial_mass {
+    double mass, moment, second;
+} bough_axial_mass;
+
 // Inertia lumped at a vertex, in section axes about the vertex.
 typedef struct bough_vertex_inertia {
     double mass;       // [kg]
@@ -42,6 +47,7 @@ typedef struct bough_vertex_inertia {
     // parts that the sections do not have, theory (120): inertia across the axis [kg m²], and mass [kg] that
     // balances it, and a neighbour's
     double added_inertia, added_mass;
+    bough_axial_mass outer; // of the segment towards the tip, about the vertex
 } bough_vertex_inertia;
 
 // The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
@@ -60,6 +66,8 @@ typedef struct bough_rod_model bough_rod_model;
 typedef struct bough_rod_sections {
     void (*strain)(const void *axis, const bough_rod_model *m, int n, const bough_rod_part *part,
                    double strain[6]);
+    // between two arc lengths, about the former
+    bough_axial_mass (*mass)(const void *axis, double from, double to);
     const void *axis;
 } bough_rod_sections;
 

@@ -49,6 +49,7 @@ typedef struct lumping {
     int segment;
     double twist;                // ∫1/GJ over the segment
     double curvature;            // ∫ρ (s − a)(b − s) [kg m²]
+    double second;               // of the left vertex by hat functions, ∫ρ (s − a)²(b − s)/h [kg m²]
     bough_vec3 offset_curvature; // ∫ρ c (s − a)(b − s), c the mass centre's offset, BRF [kg m³]
     bough_vertex_inertia fine[2], rigid[2]; // on the two vertices
 } lumping;
@@ -119,6 +120,7 @@ static void add_mass(void *context, const bough_section_point *p) {
     double bubble = weight * x.mass * (s - a) * (b - s);
     bough_vec3 centre = bough_mat3_mul(section, bough_v3(x.centre[0], x.centre[1], 0));
     c->curvature += bubble;
+    c->second += (1 - fraction) * weight * x.mass * (s - a) * (s - a);
     c->offset_curvature = bough_axpy(bubble, centre, c->offset_curvature);
 }
 
@@ -163,7 +165,8 @@ static void add_gain(lumping *c, bough_section_mass gain) {
 typedef struct segment_inertia {
     bough_vertex_inertia side[2][2]; // way, side
     double shift[2];                 // first moments of the fine way along the segment [kg m]
-    bool rigid;                      // the way taken
+    double second[2]; // of each way, second moment along the segment at its left vertex [kg m²]
+    bool rigid;       // the way taken
 } segment_inertia;
 
 static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k,
@@ -176,6 +179,8 @@ static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod
     double bend = 0.5 * c.curvature / (to - from);
     s.shift[0] = bend + gain.moment.z;
     s.shift[1] = (to - from) * gain.mass - s.shift[0];
+    s.second[0] = (to - from) * (gain.moment.z - 0.5 * (to - from) * gain.mass);
+    s.second[1] = c.second;
     add_end_terms(&c);
     add_gain(&c, gain);
     memcpy(s.side[0], c.fine, sizeof c.fine);
@@ -242,6 +247,8 @@ static void sum_vertices(const bough_rod_def *def, const segment_inertia *segmen
         for (int side = 0; side < 2; side++) {
             add_inertia(&segment[k].side[segment[k].rigid][side], &vertex[k + side]);
         }
+        const bough_vertex_inertia *left = &segment[k].side[segment[k].rigid][0];
+        vertex[k].outer = (bough_axial_mass){left->mass, left->moment.z, segment[k].second[segment[k].rigid]};
     }
     for (int i = 0; i <= n && n > 1; i++) {
         double shift = (i < n && !segment[i].rigid ? segment[i].shift[0] : 0) +

@@ -53,6 +53,11 @@ static double segment_length(const bough_section_loads *x, int i) {
     return x->beam->def.span[i + 1] - x->beam->def.span[i];
 }
 
+// From the left to the right vertex, per length.
+static bough_vec3 chord(const bough_section_loads *x, int i) {
+    return bough_scale(1 / segment_length(x, i), step_between(x, i));
+}
+
 // The force of a segment is constant over its length.
 static bough_section_load middle_load(const bough_section_loads *x, int i) {
     bough_vec3 moment[2];
@@ -60,10 +65,40 @@ static bough_section_load middle_load(const bough_section_loads *x, int i) {
     return (bough_section_load){segment_force(x, i), bough_between(moment[0], moment[1], 0.5)};
 }
 
+// -- inertia --------------------------------------------------------------------------------------
+
+// Change of the acceleration along segment i, per length.
+static bough_vec3 acceleration_slope(const bough_section_loads *x, int i) {
+    bough_vec3 change = bough_sub(x->acceleration[i + 1], x->acceleration[i]);
+    return bough_scale(1 / (x->centre[i + 1] - x->centre[i]), change);
+}
+
+// theory (121): what inertia and weight within segment i add, at a fraction of its length, to the constant
+// force and the linear moment that balance the masses at its vertices.
+static bough_section_load inertia_load(const bough_section_loads *x, int i, double fraction) {
+    const bough_axial_mass *at_vertex = &x->beam->mesh->vertex[i].outer;
+    double from = x->beam->def.span[i], distance = fraction * segment_length(x, i);
+    bough_axial_mass below = {0};
+    if (fraction == 1) {
+        below = x->mass[i];
+    } else if (fraction > 0) {
+        const bough_rod_sections *sections = &x->beam->mesh->sections;
+        below = sections->mass(sections->axis, from, from + distance);
+    }
+    double mass = below.mass - at_vertex->mass, moment = below.moment - at_vertex->moment;
+    double second = below.second - at_vertex->second;
+    bough_vec3 slope = acceleration_slope(x, i);
+    bough_vec3 a = bough_axpy(from - x->centre[i], slope, x->acceleration[i]);
+    bough_vec3 arm = bough_scale(moment - distance * mass, a);
+    arm = bough_axpy(second - distance * moment, slope, arm);
+    return (bough_section_load){bough_axpy(moment, slope, bough_scale(mass, a)),
+                                bough_cross(chord(x, i), arm)};
+}
+
 // -- force and torsional moment -------------------------------------------------------------------
 
 // From the middle of a segment to the next place at which the loads are known, the middle of a neighbour or
-// an end of the rod.
+// an end of the rod. The change of the force is that by loads along the rod.
 typedef struct neighbour {
     bool known, inner;        // no concentrated force lies between both; it is a segment
     double distance;          // [m], negative towards the root
@@ -74,9 +109,11 @@ static neighbour neighbour_of(const bough_section_loads *x, int i, int sign) {
     int next = i + sign, n = x->beam->def.n_segment;
     bool inner = next >= 0 && next < n;
     bough_section_load from = middle_load(x, i), to = {{0, 0, 0}, {0, 0, 0}};
+    from.force = bough_add(from.force, inertia_load(x, i, sign > 0).force);
     double length = segment_length(x, i) / 2;
     if (inner) {
         to = middle_load(x, next);
+        to.force = bough_add(to.force, inertia_load(x, next, sign < 0).force);
         length += segment_length(x, next) / 2;
     } else if (next < 0) {
         to = x->root;
@@ -100,19 +137,12 @@ static bough_vec3 bow_of_loads(const bough_section_loads *x, int i) {
     return bough_mat3_mul(axes_at(x, i, 0.5), bough_v3_load(moment));
 }
 
-// theory (119): force in the middle of a segment less that of the segment. The loads along it and its
-// neighbours follow from the mean bow, -(h²/12) d₃×f.
+// theory (119): the force by loads along the rod in the middle of a segment, less its mean.
 static bough_vec3 middle_excess(const bough_section_loads *x, int i, const neighbour *a, const neighbour *b) {
-    int left = i - a->inner, right = i + b->inner;
     double h = segment_length(x, i), distance = b->distance - a->distance; // between the places
-    double between = (b->inner ? b->distance : 0) - (a->inner ? a->distance : 0);
     double ends = (b->inner ? 0 : 1 / b->distance) - (a->inner ? 0 : 1 / a->distance);
-    bough_vec3 before = bough_scale(pow(segment_length(x, left), -2), bow_of_loads(x, left));
-    bough_vec3 after = bough_scale(pow(segment_length(x, right), -2), bow_of_loads(x, right));
-    bough_vec3 slope = bough_cross(axes_at(x, i, 0.5).c3, bough_sub(after, before));
     bough_vec3 second = bough_scale(2 / distance, bough_sub(b->slope.force, a->slope.force));
-    double part = h * h / (24 + 2 * h * h * ends / distance);
-    return bough_scale(part, bough_axpy(24 / between, slope, second));
+    return bough_scale(-h * h / (24 - 2 * h * h * ends / distance), second);
 }
 
 // The parabola through the middles of three segments, or of two and an end. A concentrated force makes a
@@ -120,6 +150,7 @@ static bough_vec3 middle_excess(const bough_section_loads *x, int i, const neigh
 static bough_section_load load_between(const bough_section_loads *x, int i, double fraction) {
     double offset = (fraction - 0.5) * segment_length(x, i);
     bough_section_load middle = middle_load(x, i);
+    middle.force = bough_add(middle.force, inertia_load(x, i, fraction).force);
     neighbour a = neighbour_of(x, i, -1), b = neighbour_of(x, i, 1);
     bool left = offset < 0 ? a.known : !b.known;
     double weight = left ? 0 : 1; // of b's slope
@@ -141,13 +172,8 @@ static bough_section_load load_between(const bough_section_loads *x, int i, doub
 
 // -- bending moment -------------------------------------------------------------------------------
 
-// From the left to the right vertex, per length.
-static bough_vec3 chord(const bough_section_loads *x, int i) {
-    return bough_scale(1 / segment_length(x, i), step_between(x, i));
-}
-
-// Second derivative of the moment, the mean over the neighbours that no concentrated force separates;
-// `curved`: the part that the forces have as the chords turn.
+// Second derivative of the moment by loads along the rod, the mean over the neighbours that no concentrated
+// force separates; `curved`: the part that the forces have as the chords turn.
 static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_vec3 *curved) {
     bough_vec3 loaded = {0, 0, 0}, force = segment_force(x, i);
     int count = 0;
@@ -158,7 +184,9 @@ static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_ve
         double distance = side * (segment_length(x, i) + segment_length(x, next)) / 2;
         bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_force(x, next);
         bough_vec3 along = bough_between(chord(x, i), chord(x, next), 0.5);
-        bough_vec3 change = bough_cross(bough_sub(other, force), along);
+        bough_vec3 inner = bough_add(force, inertia_load(x, i, side > 0).force);
+        bough_vec3 outer = bough_add(other, inertia_load(x, next, side < 0).force);
+        bough_vec3 change = bough_cross(bough_sub(outer, inner), along);
         loaded = bough_axpy(1 / distance, change, loaded);
         *curved = bough_axpy(1 / distance, bough_cross(bough_between(force, other, 0.5), turn), *curved);
         count++;
@@ -176,14 +204,20 @@ static bough_vec3 bending_at(const bough_section_loads *x, int i, double f) {
     bough_vec3 curved, bend = bough_scale(square / 2, moment_curvature(x, i, &curved)), linear[2];
     bough_vec3 mean = bough_axpy(-square / 12, curved, bow_of_loads(x, i));
     bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
-    if (i == 0 && f < 0.5)
-        return bough_axpy(f * (f - 0.5), bend, bough_between(x->root.moment, middle, 2 * f));
+    bough_vec3 inertia = inertia_load(x, i, f).moment;
+    if (i == 0 && f < 0.5) {
+        bough_vec3 root = bough_sub(x->root.moment, inertia_load(x, i, 0).moment);
+        bough_vec3 straight = bough_add(inertia, bough_between(root, middle, 2 * f));
+        return bough_axpy(f * (f - 0.5), bend, straight);
+    }
     if (i == n - 1 && f > 0.5 && !x->kink[n]) {
-        bough_vec3 end = beam->end >= 0 ? x->end.moment : bough_v3(0, 0, 0);
-        return bough_axpy((f - 0.5) * (f - 1), bend, bough_between(middle, end, 2 * f - 1));
+        bough_vec3 end = bough_scale(-1, inertia_load(x, i, 1).moment);
+        if (beam->end >= 0) end = bough_add(end, x->end.moment);
+        bough_vec3 straight = bough_add(inertia, bough_between(middle, end, 2 * f - 1));
+        return bough_axpy((f - 0.5) * (f - 1), bend, straight);
     }
     bough_section_loads_linear(x, i, linear);
-    bough_vec3 straight = bough_between(linear[0], linear[1], f);
+    bough_vec3 straight = bough_add(inertia, bough_between(linear[0], linear[1], f));
     return bough_axpy((f - 0.5) * (f - 0.5) - 1. / 12, bend, bough_add(mean, straight));
 }
 
@@ -210,9 +244,20 @@ static bool *find_kinks(bough_arena *arena, const bough_scene *scene, const boug
 
 bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
                                                const bough_beam *beam) {
+    const bough_rod_model *m = beam->mesh;
     bough_section_loads x = {.simulation = s, .beam = beam, .kink = find_kinks(arena, s->scene, beam)};
-    bough_rod_scratch_init(&x.scratch, arena, beam->mesh);
-    x.lack = bough_arena_take(arena, (size_t)beam->mesh->n_segment * sizeof *x.lack);
+    bough_rod_scratch_init(&x.scratch, arena, m);
+    size_t n = (size_t)m->n_segment;
+    x.lack = bough_arena_take(arena, n * sizeof *x.lack);
+    x.acceleration = bough_arena_take(arena, (n + 1) * sizeof *x.acceleration);
+    x.centre = bough_arena_doubles(arena, n + 1);
+    x.mass = bough_arena_take(arena, n * sizeof *x.mass);
+    for (int i = 0; i <= m->n_segment; i++) {
+        bool moves = i > 0 && i <= m->n;
+        x.centre[i] = m->span[i] + (moves ? m->vertex[i].moment.z / m->vertex[i].mass : 0);
+        if (i == m->n_segment) break;
+        x.mass[i] = m->sections.mass(m->sections.axis, m->span[i], m->span[i + 1]);
+    }
     return x;
 }
 
@@ -226,23 +271,33 @@ static bough_vec3 acceleration_of(const bough_section_loads *x, int i) {
     return bough_scale(1 / x->beam->mesh->vertex[i].mass, force);
 }
 
-// theory (120). At an end that carries bodies, whose forces the vertex does not contain, a is extrapolated.
+// The forces on ends that are the carrier's or carry bodies are not those on a vertex: there a is
+// extrapolated.
+static void find_accelerations(bough_section_loads *x) {
+    const bough_rod_model *m = x->beam->mesh;
+    int n = m->n;
+    bough_vec3 *a = x->acceleration;
+    for (int i = 1; i <= n; i++) a[i] = acceleration_of(x, i);
+    bough_vec3 first = {0, 0, 0}, last = {0, 0, 0};
+    if (n > 1) {
+        first = bough_scale(x->centre[0] - x->centre[1], acceleration_slope(x, 1));
+        last = bough_scale(x->centre[m->n_segment] - x->centre[n], acceleration_slope(x, n - 1));
+    }
+    if (n > 0) a[0] = bough_add(a[1], first);
+    if (n > 0 && n < m->n_segment) a[n + 1] = bough_add(a[n], last);
+}
+
+// theory (120)
 static void find_lack(bough_section_loads *x) {
     const bough_rod_model *m = x->beam->mesh;
     bough_section_load sum = {{0, 0, 0}, {0, 0, 0}};
     for (int i = m->n_segment; i > 0; i--) {
         const bough_vertex_inertia *vertex = &m->vertex[i];
-        int near = i < m->n ? i : m->n, other = near > 1 ? near - 1 : near + 1;
-        if (other <= m->n && (vertex->added_mass != 0 || vertex->added_inertia != 0)) {
-            double from = m->span[near] + m->vertex[near].moment.z / m->vertex[near].mass;
-            double to = m->span[other] + m->vertex[other].moment.z / m->vertex[other].mass;
-            bough_vec3 a = acceleration_of(x, near);
-            bough_vec3 slope = bough_scale(1 / (to - from), bough_sub(acceleration_of(x, other), a));
-            a = bough_axpy(m->span[i] - from, slope, a);
-            sum.force = bough_axpy(vertex->added_mass, a, sum.force);
-            bough_vec3 turn = bough_cross(vertex_axes(x, i).c3, slope);
-            sum.moment = bough_axpy(vertex->added_inertia, turn, sum.moment);
-        }
+        bough_vec3 slope = acceleration_slope(x, i - 1);
+        bough_vec3 a = bough_axpy(m->span[i] - x->centre[i], slope, x->acceleration[i]);
+        sum.force = bough_axpy(vertex->added_mass, a, sum.force);
+        bough_vec3 turn = bough_cross(vertex_axes(x, i).c3, slope);
+        sum.moment = bough_axpy(vertex->added_inertia, turn, sum.moment);
         sum.moment = bough_add(sum.moment, bough_cross(step_between(x, i - 1), sum.force));
         x->lack[i - 1] = sum;
     }
@@ -255,6 +310,7 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), &x->scratch);
     bough_rod_load(m, beam->loads, t, &x->scratch);
     bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    find_accelerations(x);
     find_lack(x);
     double w[BOUGH_ROD_MOST_OUTPUTS];
     bough_simulation_accelerate(s, t);

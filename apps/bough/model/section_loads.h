@@ -20,6 +20,9 @@ typedef struct bough_section_loads {
     bool *kink;                   // (n_segment + 1) a concentrated force acts on the vertex
     bough_rod_scratch scratch;    // vertices and segments at the evaluation
     bough_section_load *lack;     // (n_segment) theory (120), at the left vertices, in the body's axes
+    bough_axial_mass *mass;       // (n_segment) of each segment about its left end
+    double *centre;               // (n_segment + 1) arc length of the vertices' mass centres [m]
+    bough_vec3 *acceleration;     // (n_segment + 1) a − g there, in the body's axes [m/s²]
     bough_section_load root, end; // in the body's axes; end: of a rod that carries bodies
 } bough_section_loads;
 

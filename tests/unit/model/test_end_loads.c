@@ -87,6 +87,27 @@ TEST(the_moment_within_segments_is_a_parabola) {
     }
 }
 
+// The NREL blade under a weight that does not bend it: mass beyond a section and its first moment, from the
+// table. In the last of six segments it falls to a fiftieth.
+TEST(the_mass_within_a_segment_is_that_of_the_table) {
+    static const double beyond[][3] = {{28, 5184.1375, 63416.21},
+                                       {53, 555.40676, 1931.5422},
+                                       {58, 155.60766, 225.70957},
+                                       {60, 47.709261, 27.064607}};
+    for (int k = 0; k < 8; k++) {
+        double load[4], at = beyond[k / 2][0];
+        static const char *const name[] = {"aSpn1FLx", "aSpn1FLy", "aSpn1MLx", "aSpn1MLy"};
+        for (int i = 0; i < 4; i++) {
+            load[i] = at_start(name[i],
+                               "gravity: [1e-3, 0, 0]\n" AT_REST "  - {name: a, fidelity: rod, rod: {table: "
+                               "%s/apps/turbine/blade-structure.yaml, segments: %d},\n" CLAMPED SENSOR,
+                               BOUGH_SOURCE_DIR, k % 2 ? 6 : 15, at);
+        }
+        check_near(hypot(load[0], load[1]) * 1e6, beyond[k / 2][1], 1e-6, 0);
+        check_near(hypot(load[2], load[3]) * 1e6, beyond[k / 2][2], 1e-6, 0);
+    }
+}
+
 // A cantilever of 2 m under a load that grows from 20 to 60 N/m along it, of few segments.
 TEST(the_force_within_segments_is_a_parabola) {
     for (double s = 0; s <= 2; s += 0.08) {
