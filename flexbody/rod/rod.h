@@ -34,9 +34,10 @@ enum {
 // Offsets of the state's parts, in components.
 enum { BOUGH_ROD_X = 0, BOUGH_ROD_P = 3, BOUGH_ROD_U = 7, BOUGH_ROD_W = 10 };
 
-// Mass on the axis [kg], its first [kg m] and second moment [kg m²] along it.
+// Mass of a part of a segment, about its left vertex.
 typedef struct bough_axial_mass {
-    double mass, moment, second;
+    double mass, moment, second; // [kg]; along the chord [kg m, kg m²]
+    bough_vec3 offset; // of the mass centre from the chord, times the mass, in the vertex' axes [kg m]
 } bough_axial_mass;
 
 // Inertia lumped at a vertex, in section axes about the vertex.
@@ -47,7 +48,7 @@ typedef struct bough_vertex_inertia {
     // parts that the sections do not have, theory (120): inertia across the axis [kg m²], and mass [kg] that
     // balances it, and a neighbour's
     double added_inertia, added_mass;
-    bough_axial_mass outer; // of the segment towards the tip, about the vertex
+    bough_axial_mass outer; // the part of it that the segment towards the tip gives
 } bough_vertex_inertia;
 
 // The upper triangle of the mass of theory (11) in section axes: [mE, −ξ(s); ξ(s), I].
@@ -63,16 +64,17 @@ typedef struct bough_rod_part {
 // The sections between the vertices: `strain` gives the mean strain (6) of segment n, in the axes of its
 // middle, by such a wrench, beyond that by its forces and moments on the vertices by hat functions.
 typedef struct bough_rod_model bough_rod_model;
+typedef struct bough_rod_def bough_rod_def;
 typedef struct bough_rod_sections {
     void (*strain)(const void *axis, const bough_rod_model *m, int n, const bough_rod_part *part,
                    double strain[6]);
-    // between two arc lengths, about the former
-    bough_axial_mass (*mass)(const void *axis, double from, double to);
+    // mass of segment n up to an arc length
+    bough_axial_mass (*mass)(const void *axis, const bough_rod_def *def, int n, double to);
     const void *axis;
 } bough_rod_sections;
 
 // What is discretised: filled by bough_section_discretise or by hand.
-typedef struct bough_rod_def {
+struct bough_rod_def {
     const char *name;
     int n_segment;                       // N
     const double *span;                  // arc length of the vertices (N + 1) [m]
@@ -91,7 +93,7 @@ typedef struct bough_rod_def {
     const double *bow;                   // B per segment, symmetric 4×4, upper triangle by columns (N × 10)
                                          // [1, m, m²]: rod_elastic.h; NULL: 0
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
-} bough_rod_def;
+};
 
 struct bough_rod_model {
     const char *name;

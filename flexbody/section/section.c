@@ -399,26 +399,6 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
     for (int i = 0; i < 36; i++) mean[i / 6] += q[i / 6][i % 6] * c.strain[i % 6] / h;
 }
 
-typedef struct axial_sum {
-    double from;
-    bough_axial_mass sum;
-} axial_sum;
-
-static void add_axial_mass(void *context, const bough_section_point *p) {
-    axial_sum *c = context;
-    double distance = p->s - c->from;
-    double mass = p->weight * bough_section_mix(p->place.fraction, p->place.low->mass, p->place.high->mass);
-    c->sum.mass += mass;
-    c->sum.moment += mass * distance;
-    c->sum.second += mass * distance * distance;
-}
-
-static bough_axial_mass mass_between(const void *axis, double from, double to) {
-    axial_sum c = {.from = from};
-    bough_section_integrate(axis, from, to, add_axial_mass, &c);
-    return c.sum;
-}
-
 // -- whole ----------------------------------------------------------------------------------------
 
 bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
@@ -446,7 +426,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .taper = laws.taper,
                            .bow = laws.bow,
                            .inertia = inertia,
-                           .sections = {part_strain, mass_between, a}};
+                           .sections = {part_strain, bough_section_mass_below, a}};
     for (int i = 0; i <= n_segment; i++) {
         span[i] = a->arc[a->n - 1] * bough_section_graded(table->grading, (double)i / n_segment);
         position[i] = bough_section_at(a, span[i]).position;

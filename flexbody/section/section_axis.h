@@ -49,6 +49,9 @@ typedef struct bough_section_mass {
     bough_vec3 moment; // [kg m]
 } bough_section_mass;
 
+// Mass of segment n of a def up to an arc length, theory (121).
+bough_axial_mass bough_section_mass_below(const void *axis, const bough_rod_def *def, int n, double to);
+
 // Inertia lumped to the vertices of a def that has its mesh (section_inertia.c): vertex (N + 1). Per
 // segment (N), gain is the mass of its left vertex beyond lumping by hat functions.
 void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,

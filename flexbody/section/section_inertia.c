@@ -99,6 +99,12 @@ static double twist_fraction(const lumping *c, double s) {
     return below.twist / c->twist;
 }
 
+// Where a point of the segment's axis would be on its chord.
+static bough_vec3 on_chord_at(const bough_rod_def *def, int k, double s) {
+    double fraction = (s - def->span[k]) / (def->span[k + 1] - def->span[k]);
+    return bough_between(def->position[k], def->position[k + 1], fraction);
+}
+
 static void add_mass(void *context, const bough_section_point *p) {
     lumping *c = context;
     const double s = p->s, weight = p->weight;
@@ -107,8 +113,7 @@ static void add_mass(void *context, const bough_section_point *p) {
     double a = def->span[k], b = def->span[k + 1], fraction = (s - a) / (b - a);
     double twisted = twist_fraction(c, s);
     bough_section_station x = bough_section_of(p->place);
-    bough_vec3 step = bough_sub(def->position[k + 1], def->position[k]);
-    bough_vec3 chord = bough_axpy(fraction, step, def->position[k]);
+    bough_vec3 chord = on_chord_at(def, k, s);
     bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, p->place));
     for (int side = 0; side < 2; side++) {
         double hat = side == 0 ? 1 - fraction : fraction;
@@ -165,8 +170,8 @@ static void add_gain(lumping *c, bough_section_mass gain) {
 typedef struct segment_inertia {
     bough_vertex_inertia side[2][2]; // way, side
     double shift[2];                 // first moments of the fine way along the segment [kg m]
-    double second[2]; // of each way, second moment along the segment at its left vertex [kg m²]
-    bool rigid;       // the way taken
+    bough_axial_mass left[2];        // of each way, at the left vertex
+    bool rigid;                      // the way taken
 } segment_inertia;
 
 static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k,
@@ -176,15 +181,22 @@ static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod
     double from = def->span[k], to = def->span[k + 1];
     bough_section_integrate(a, from, to, add_twist, &c);
     bough_section_integrate(a, from, to, add_mass, &c);
-    double bend = 0.5 * c.curvature / (to - from);
-    s.shift[0] = bend + gain.moment.z;
-    s.shift[1] = (to - from) * gain.mass - s.shift[0];
-    s.second[0] = (to - from) * (gain.moment.z - 0.5 * (to - from) * gain.mass);
-    s.second[1] = c.second;
+    double h = to - from, bend = c.curvature / h;
+    s.shift[0] = 0.5 * bend + gain.moment.z;
+    s.shift[1] = h * gain.mass - s.shift[0];
     add_end_terms(&c);
     add_gain(&c, gain);
     memcpy(s.side[0], c.fine, sizeof c.fine);
     memcpy(s.side[1], c.rigid, sizeof c.rigid);
+    const double moment[2] = {s.shift[0], bend},
+                 second[2] = {h * gain.moment.z - h * h * gain.mass / 2, c.second};
+    bough_vec3 chord = bough_scale(1 / h, bough_sub(def->position[k + 1], def->position[k]));
+    chord = bough_mat3_tmul(bough_rotation_matrix(def->rotation[k]), chord);
+    for (int way = 0; way < 2; way++) {
+        const bough_vertex_inertia *v = &s.side[way][0];
+        bough_vec3 offset = bough_axpy(-moment[way], chord, v->moment);
+        s.left[way] = (bough_axial_mass){v->mass, moment[way], second[way], offset};
+    }
     return s;
 }
 
@@ -247,8 +259,7 @@ static void sum_vertices(const bough_rod_def *def, const segment_inertia *segmen
         for (int side = 0; side < 2; side++) {
             add_inertia(&segment[k].side[segment[k].rigid][side], &vertex[k + side]);
         }
-        const bough_vertex_inertia *left = &segment[k].side[segment[k].rigid][0];
-        vertex[k].outer = (bough_axial_mass){left->mass, left->moment.z, segment[k].second[segment[k].rigid]};
+        vertex[k].outer = segment[k].left[segment[k].rigid];
     }
     for (int i = 0; i <= n && n > 1; i++) {
         double shift = (i < n && !segment[i].rigid ? segment[i].shift[0] : 0) +
@@ -283,6 +294,34 @@ void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const b
             change = make_rigid(i, 1, n, segment) || make_rigid(i, 3, n, segment) || change;
         }
     }
+}
+
+// -- within segments ------------------------------------------------------------------------------
+
+typedef struct part {
+    const lumping *whole;
+    bough_axial_mass mass;
+} part;
+
+static void add_part(void *context, const bough_section_point *p) {
+    part *c = context;
+    const lumping *whole = c->whole;
+    bough_section_station x = bough_section_of(p->place);
+    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(whole->axis, p->place));
+    bough_vec3 chord = on_chord_at(whole->def, whole->segment, p->s);
+    element e = element_of(whole, &x, section, p->weight, whole->segment, chord);
+    double distance = p->s - whole->def->span[whole->segment];
+    c->mass.mass += e.mass;
+    c->mass.moment += e.mass * distance;
+    c->mass.second += e.mass * distance * distance;
+    c->mass.offset = bough_axpy(e.mass, bough_add(e.offset, e.centre), c->mass.offset);
+}
+
+bough_axial_mass bough_section_mass_below(const void *axis, const bough_rod_def *def, int n, double to) {
+    lumping whole = {.axis = axis, .def = def, .segment = n};
+    part c = {.whole = &whole};
+    bough_section_integrate(axis, def->span[n], to, add_part, &c);
+    return c.mass;
 }
 
 bough_vertex_inertia bough_section_rigid(const bough_rod_def *def) {

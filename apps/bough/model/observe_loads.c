@@ -6,16 +6,10 @@
 
 // -- sections -------------------------------------------------------------------------------------
 
-// A place on a rod: within a segment, at a fraction of its length.
-typedef struct place {
-    int segment;
-    double fraction;
-} place;
-
 typedef struct sensor {
     bough_section_loads loads;
     int n;
-    place *place; // (n)
+    bough_rod_place *place; // (n)
 } sensor;
 
 enum { PLACE_CHANNELS = 12 };
@@ -37,13 +31,13 @@ static bough_vec3 vertex_slope(const sensor *x, int i) {
     return bough_sub(now.c3, bough_rotation_matrix(x->loads.beam->def.rotation[i]).c3);
 }
 
-// Change of curvature over the segment of a place, by its moments; `axes` are those of its sections.
-static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *axes) {
+// Change of curvature over a segment, by its moments; `axes` are those of its sections.
+static bough_vec3 curvature_change(const sensor *x, int segment, const bough_mat3 *axes) {
     double m[3], k[3] = {0, 0, 0}, compliance[21];
     bough_vec3 moment[2];
-    bough_section_loads_linear(&x->loads, at.segment, moment);
+    bough_section_loads_linear(&x->loads, segment, moment);
     bough_v3_store(bough_mat3_tmul(*axes, bough_sub(moment[1], moment[0])), m);
-    if (bough_symmetric6_inverse(x->loads.beam->def.stiffness + 21 * at.segment, compliance))
+    if (bough_symmetric6_inverse(x->loads.beam->def.stiffness + 21 * segment, compliance))
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) k[i] += compliance[bough_symmetric6_index(3 + i, 3 + j)] * m[j];
     return bough_mat3_mul(*axes, bough_v3_load(k));
@@ -51,16 +45,16 @@ static bough_vec3 curvature_change(const sensor *x, place at, const bough_mat3 *
 
 // Between vertices displacement and rotation are parabolas, whose second derivatives follow from the slopes
 // and the moments at both.
-static void sample_place(const sensor *x, place at, double *value) {
-    int left = at.segment, right = left + 1;
+static void sample_place(const sensor *x, const bough_rod_place *at, double *value) {
+    int left = at->segment, right = left + 1;
     const double *span = x->loads.beam->def.span;
     bough_mat3 axes;
-    bough_section_load load = bough_section_loads_at(&x->loads, at.segment, at.fraction, &axes);
-    double bow = at.fraction * (at.fraction - 1) / 2 * (span[right] - span[left]);
-    bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at.fraction);
+    bough_section_load load = bough_section_loads_at(&x->loads, at, &axes);
+    double bow = at->fraction * (at->fraction - 1) / 2 * (span[right] - span[left]);
+    bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at->fraction);
     shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
-    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at.fraction);
-    turn = bough_axpy(bow, curvature_change(x, at, &axes), turn);
+    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at->fraction);
+    turn = bough_axpy(bow, curvature_change(x, left, &axes), turn);
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
     bough_observe_vector(load.moment, 1e3, bough_observe_vector(load.force, 1e3, value));
 }
@@ -69,15 +63,16 @@ static void sample_sections(void *self, double t, double *value) {
     sensor *x = self;
     bool good = bough_section_loads_evaluate(&x->loads, t);
     for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
-        sample_place(x, x->place[k], value);
+        sample_place(x, &x->place[k], value);
         for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;
     }
 }
 
-static place find_place(const bough_rod_def *def, double span) {
+static bough_rod_place find_place(const bough_section_loads *loads, double at) {
+    const double *span = loads->beam->def.span;
     int i = 0;
-    while (i < def->n_segment - 1 && def->span[i + 1] <= span) i++;
-    return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
+    while (i < loads->beam->def.n_segment - 1 && span[i + 1] <= at) i++;
+    return bough_section_loads_place(loads, i, (at - span[i]) / (span[i + 1] - span[i]));
 }
 
 // Blades and a tower of one rod have OpenFAST's names.
@@ -103,7 +98,7 @@ static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, boug
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
     bough_channels_group(list, sample_sections, x);
     for (int k = 0; k < x->n; k++) {
-        x->place[k] = find_place(&beam->def, from->at[k]);
+        x->place[k] = find_place(&x->loads, from->at[k]);
         add_place(s, beam, k + 1, list);
     }
 }

@@ -73,26 +73,41 @@ static bough_vec3 acceleration_slope(const bough_section_loads *x, int i) {
     return bough_scale(1 / (x->centre[i + 1] - x->centre[i]), change);
 }
 
-// theory (121): what inertia and weight within segment i add, at a fraction of its length, to the constant
-// force and the linear moment that balance the masses at its vertices.
-static bough_section_load inertia_load(const bough_section_loads *x, int i, double fraction) {
+bough_rod_place bough_section_loads_place(const bough_section_loads *x, int segment, double fraction) {
+    bough_rod_place p = {.segment = segment, .fraction = fraction};
+    const bough_rod_sections *sections = &x->beam->mesh->sections;
+    double to = x->beam->def.span[segment] + fraction * segment_length(x, segment);
+    if (fraction == 1) p.inner = x->mass[segment];
+    if (fraction > 0 && fraction < 1) p.inner = sections->mass(sections->axis, &x->beam->def, segment, to);
+    return p;
+}
+
+// theory (121): what inertia and weight within a segment add, at a place, to the constant force and the
+// linear moment that balance the masses at its vertices.
+static bough_section_load inertia_load(const bough_section_loads *x, const bough_rod_place *p) {
+    int i = p->segment;
     const bough_axial_mass *at_vertex = &x->beam->mesh->vertex[i].outer;
-    double from = x->beam->def.span[i], distance = fraction * segment_length(x, i);
-    bough_axial_mass below = {0};
-    if (fraction == 1) {
-        below = x->mass[i];
-    } else if (fraction > 0) {
-        const bough_rod_sections *sections = &x->beam->mesh->sections;
-        below = sections->mass(sections->axis, from, from + distance);
-    }
-    double mass = below.mass - at_vertex->mass, moment = below.moment - at_vertex->moment;
-    double second = below.second - at_vertex->second;
+    double from = x->beam->def.span[i], distance = p->fraction * segment_length(x, i);
+    double mass = p->inner.mass - at_vertex->mass, moment = p->inner.moment - at_vertex->moment;
+    double second = p->inner.second - at_vertex->second;
+    bough_vec3 offset = bough_mat3_mul(vertex_axes(x, i), bough_sub(p->inner.offset, at_vertex->offset));
     bough_vec3 slope = acceleration_slope(x, i);
     bough_vec3 a = bough_axpy(from - x->centre[i], slope, x->acceleration[i]);
     bough_vec3 arm = bough_scale(moment - distance * mass, a);
     arm = bough_axpy(second - distance * moment, slope, arm);
     return (bough_section_load){bough_axpy(moment, slope, bough_scale(mass, a)),
-                                bough_cross(chord(x, i), arm)};
+                                bough_add(bough_cross(chord(x, i), arm), bough_cross(offset, a))};
+}
+
+// … at the left or the right end of a segment.
+static bough_section_load inertia_at_end(const bough_section_loads *x, int i, bool right) {
+    bough_rod_place end = {.segment = i, .fraction = right};
+    if (right) end.inner = x->mass[i];
+    return inertia_load(x, &end);
+}
+
+static bough_section_load sum_of(bough_section_load a, bough_section_load b) {
+    return (bough_section_load){bough_add(a.force, b.force), bough_add(a.moment, b.moment)};
 }
 
 // -- force and torsional moment -------------------------------------------------------------------
@@ -108,16 +123,15 @@ typedef struct neighbour {
 static neighbour neighbour_of(const bough_section_loads *x, int i, int sign) {
     int next = i + sign, n = x->beam->def.n_segment;
     bool inner = next >= 0 && next < n;
-    bough_section_load from = middle_load(x, i), to = {{0, 0, 0}, {0, 0, 0}};
-    from.force = bough_add(from.force, inertia_load(x, i, sign > 0).force);
+    bough_section_load from = sum_of(middle_load(x, i), inertia_at_end(x, i, sign > 0));
+    bough_section_load to = {{0, 0, 0}, {0, 0, 0}};
     double length = segment_length(x, i) / 2;
     if (inner) {
-        to = middle_load(x, next);
-        to.force = bough_add(to.force, inertia_load(x, next, sign < 0).force);
+        to = sum_of(middle_load(x, next), inertia_at_end(x, next, sign < 0));
         length += segment_length(x, next) / 2;
     } else if (next < 0) {
         to = x->root;
-    } else if (x->beam->end >= 0) {
+    } else {
         to = x->end;
     }
     bough_vec3 force = bough_sub(to.force, from.force), moment = bough_sub(to.moment, from.moment);
@@ -147,10 +161,10 @@ static bough_vec3 middle_excess(const bough_section_loads *x, int i, const neigh
 
 // The parabola through the middles of three segments, or of two and an end. A concentrated force makes a
 // step at its vertex: towards it the slope of the segment's other half continues.
-static bough_section_load load_between(const bough_section_loads *x, int i, double fraction) {
-    double offset = (fraction - 0.5) * segment_length(x, i);
-    bough_section_load middle = middle_load(x, i);
-    middle.force = bough_add(middle.force, inertia_load(x, i, fraction).force);
+static bough_section_load load_between(const bough_section_loads *x, const bough_rod_place *p) {
+    int i = p->segment;
+    double offset = (p->fraction - 0.5) * segment_length(x, i);
+    bough_section_load middle = sum_of(middle_load(x, i), inertia_load(x, p));
     neighbour a = neighbour_of(x, i, -1), b = neighbour_of(x, i, 1);
     bool left = offset < 0 ? a.known : !b.known;
     double weight = left ? 0 : 1; // of b's slope
@@ -184,8 +198,8 @@ static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_ve
         double distance = side * (segment_length(x, i) + segment_length(x, next)) / 2;
         bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_force(x, next);
         bough_vec3 along = bough_between(chord(x, i), chord(x, next), 0.5);
-        bough_vec3 inner = bough_add(force, inertia_load(x, i, side > 0).force);
-        bough_vec3 outer = bough_add(other, inertia_load(x, next, side < 0).force);
+        bough_vec3 inner = bough_add(force, inertia_at_end(x, i, side > 0).force);
+        bough_vec3 outer = bough_add(other, inertia_at_end(x, next, side < 0).force);
         bough_vec3 change = bough_cross(bough_sub(outer, inner), along);
         loaded = bough_axpy(1 / distance, change, loaded);
         *curved = bough_axpy(1 / distance, bough_cross(bough_between(force, other, 0.5), turn), *curved);
@@ -197,22 +211,22 @@ static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_ve
 
 // theory (118): a parabola of known mean over the segment. In the outer half of the first and the last
 // segment it ends at the moment of the root and of the end.
-static bough_vec3 bending_at(const bough_section_loads *x, int i, double f) {
+static bough_vec3 bending_at(const bough_section_loads *x, const bough_rod_place *p) {
     const bough_beam *beam = x->beam;
-    int n = beam->def.n_segment;
+    int n = beam->def.n_segment, i = p->segment;
+    double f = p->fraction;
     double square = segment_length(x, i) * segment_length(x, i);
     bough_vec3 curved, bend = bough_scale(square / 2, moment_curvature(x, i, &curved)), linear[2];
     bough_vec3 mean = bough_axpy(-square / 12, curved, bow_of_loads(x, i));
     bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
-    bough_vec3 inertia = inertia_load(x, i, f).moment;
+    bough_vec3 inertia = inertia_load(x, p).moment;
     if (i == 0 && f < 0.5) {
-        bough_vec3 root = bough_sub(x->root.moment, inertia_load(x, i, 0).moment);
+        bough_vec3 root = bough_sub(x->root.moment, inertia_at_end(x, i, false).moment);
         bough_vec3 straight = bough_add(inertia, bough_between(root, middle, 2 * f));
         return bough_axpy(f * (f - 0.5), bend, straight);
     }
     if (i == n - 1 && f > 0.5 && !x->kink[n]) {
-        bough_vec3 end = bough_scale(-1, inertia_load(x, i, 1).moment);
-        if (beam->end >= 0) end = bough_add(end, x->end.moment);
+        bough_vec3 end = bough_sub(x->end.moment, inertia_at_end(x, i, true).moment);
         bough_vec3 straight = bough_add(inertia, bough_between(middle, end, 2 * f - 1));
         return bough_axpy((f - 0.5) * (f - 1), bend, straight);
     }
@@ -253,38 +267,22 @@ bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_s
     x.centre = bough_arena_doubles(arena, n + 1);
     x.mass = bough_arena_take(arena, n * sizeof *x.mass);
     for (int i = 0; i <= m->n_segment; i++) {
-        bool moves = i > 0 && i <= m->n;
-        x.centre[i] = m->span[i] + (moves ? m->vertex[i].moment.z / m->vertex[i].mass : 0);
+        x.centre[i] = m->span[i] + m->vertex[i].moment.z / m->vertex[i].mass;
         if (i == m->n_segment) break;
-        x.mass[i] = m->sections.mass(m->sections.axis, m->span[i], m->span[i + 1]);
+        x.mass[i] = m->sections.mass(m->sections.axis, &beam->def, i, m->span[i + 1]);
     }
     return x;
 }
 
-// The force on the mass of moving vertex i by loads and segments, per mass: a − g of its mass centre.
+// The force on the mass of vertex i by loads, segments and what is beyond the ends, per mass: a − g of its
+// mass centre.
 static bough_vec3 acceleration_of(const bough_section_loads *x, int i) {
     const double *load = x->scratch.load + i;
-    int stride = x->beam->mesh->stride;
+    int stride = x->beam->mesh->stride, n = x->beam->mesh->n_segment;
     bough_vec3 force = bough_v3(load[0], load[stride], load[2 * stride]);
-    force = bough_sub(force, segment_row(x, i - 1, 0));
-    if (i < x->beam->mesh->n_segment) force = bough_add(force, segment_row(x, i, 0));
+    force = bough_sub(force, i > 0 ? segment_row(x, i - 1, 0) : x->root.force);
+    force = bough_add(force, i < n ? segment_row(x, i, 0) : x->end.force);
     return bough_scale(1 / x->beam->mesh->vertex[i].mass, force);
-}
-
-// The forces on ends that are the carrier's or carry bodies are not those on a vertex: there a is
-// extrapolated.
-static void find_accelerations(bough_section_loads *x) {
-    const bough_rod_model *m = x->beam->mesh;
-    int n = m->n;
-    bough_vec3 *a = x->acceleration;
-    for (int i = 1; i <= n; i++) a[i] = acceleration_of(x, i);
-    bough_vec3 first = {0, 0, 0}, last = {0, 0, 0};
-    if (n > 1) {
-        first = bough_scale(x->centre[0] - x->centre[1], acceleration_slope(x, 1));
-        last = bough_scale(x->centre[m->n_segment] - x->centre[n], acceleration_slope(x, n - 1));
-    }
-    if (n > 0) a[0] = bough_add(a[1], first);
-    if (n > 0 && n < m->n_segment) a[n + 1] = bough_add(a[n], last);
 }
 
 // theory (120)
@@ -303,31 +301,36 @@ static void find_lack(bough_section_loads *x) {
     }
 }
 
-bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
-    const bough_simulation *s = x->simulation;
+// Forces and moments at the ends.
+static void find_ends(bough_section_loads *x, double t) {
     const bough_beam *beam = x->beam;
-    const bough_rod_model *m = beam->mesh;
-    bough_rod_gather(m, bough_beam_state(s, beam, 1), bough_simulation_rod_input(s, beam), &x->scratch);
-    bough_rod_load(m, beam->loads, t, &x->scratch);
-    bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
-    find_accelerations(x);
-    find_lack(x);
     double w[BOUGH_ROD_MOST_OUTPUTS];
-    bough_simulation_accelerate(s, t);
-    bough_simulation_root(s, beam, t, w);
+    bough_simulation_accelerate(x->simulation, t);
+    bough_simulation_root(x->simulation, beam, t, w);
     bough_vec3 root = bough_v3_load(w), arm = bough_cross(beam->def.position[0], root);
     x->root = (bough_section_load){root, bough_sub(bough_v3_load(w + 3), arm)};
-    if (beam->end < 0) return finite;
-    bough_vec3 moment = bough_mat3_mul(vertex_axes(x, m->n_segment), bough_v3_load(w + 9));
+    if (beam->end < 0) return;
+    bough_vec3 moment = bough_mat3_mul(vertex_axes(x, beam->mesh->n_segment), bough_v3_load(w + 9));
     x->end = (bough_section_load){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
+}
+
+bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
+    const bough_simulation *s = x->simulation;
+    const bough_rod_model *m = x->beam->mesh;
+    bough_rod_gather(m, bough_beam_state(s, x->beam, 1), bough_simulation_rod_input(s, x->beam), &x->scratch);
+    bough_rod_load(m, x->beam->loads, t, &x->scratch);
+    bool finite = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    find_ends(x, t);
+    for (int i = 0; i <= m->n_segment; i++) x->acceleration[i] = acceleration_of(x, i);
+    find_lack(x);
     return finite;
 }
 
-bough_section_load bough_section_loads_at(const bough_section_loads *x, int segment, double fraction,
+bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place,
                                           bough_mat3 *axes) {
-    *axes = axes_at(x, segment, fraction);
-    bough_section_load load = load_between(x, segment, fraction);
-    bough_vec3 moment = bough_mat3_tmul(*axes, bending_at(x, segment, fraction));
+    *axes = axes_at(x, place->segment, place->fraction);
+    bough_section_load load = load_between(x, place);
+    bough_vec3 moment = bough_mat3_tmul(*axes, bending_at(x, place));
     moment.z = bough_mat3_tmul(*axes, load.moment).z; // a segment's moment has no slope in torsion
     return (bough_section_load){bough_mat3_tmul(*axes, load.force), moment};
 }

@@ -20,11 +20,18 @@ typedef struct bough_section_loads {
     bool *kink;                   // (n_segment + 1) a concentrated force acts on the vertex
     bough_rod_scratch scratch;    // vertices and segments at the evaluation
     bough_section_load *lack;     // (n_segment) theory (120), at the left vertices, in the body's axes
-    bough_axial_mass *mass;       // (n_segment) of each segment about its left end
+    bough_axial_mass *mass;       // (n_segment) of whole segments
     double *centre;               // (n_segment + 1) arc length of the vertices' mass centres [m]
     bough_vec3 *acceleration;     // (n_segment + 1) a − g there, in the body's axes [m/s²]
-    bough_section_load root, end; // in the body's axes; end: of a rod that carries bodies
+    bough_section_load root, end; // in the body's axes; end: zero but for a rod that carries bodies
 } bough_section_loads;
+
+// A place on a rod: within a segment, at a fraction of its length.
+typedef struct bough_rod_place {
+    int segment;
+    double fraction;
+    bough_axial_mass inner; // of the segment's part up to there
+} bough_rod_place;
 
 // Of a body of fidelity rod.
 bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
@@ -33,9 +40,10 @@ bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_s
 // Evaluates the rod at the current synchronisation point, time t [s]. False when the forces are not finite.
 bool bough_section_loads_evaluate(bough_section_loads *x, double t);
 
-// Load of the section at a fraction of a segment's length, in the section's axes; `axes`: these in the
-// body's.
-bough_section_load bough_section_loads_at(const bough_section_loads *x, int segment, double fraction,
+bough_rod_place bough_section_loads_place(const bough_section_loads *x, int segment, double fraction);
+
+// Load of the section at a place, in the section's axes; `axes`: these in the body's.
+bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place,
                                           bough_mat3 *axes);
 
 // The moments of a segment, linear over its length, at its two vertices, in the body's axes [N m].

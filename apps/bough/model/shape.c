@@ -51,9 +51,11 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     if (!bough_section_loads_evaluate(loads, t)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
         int inner = k > 0 ? k - 1 : 0, outer = k < beam->def.n_segment ? k : k - 1;
+        bough_rod_place before = bough_section_loads_place(loads, inner, k - inner);
+        bough_rod_place after = bough_section_loads_place(loads, outer, k - outer);
         bough_mat3 axes;
-        bough_section_load a = bough_section_loads_at(loads, inner, k - inner, &axes);
-        bough_section_load b = bough_section_loads_at(loads, outer, k - outer, &axes);
+        bough_section_load a = bough_section_loads_at(loads, &before, &axes);
+        bough_section_load b = bough_section_loads_at(loads, &after, &axes);
         axes = bough_mat3_product(frame, axes);
         bough_v3_store(bough_mat3_mul(axes, bough_between(a.force, b.force, 0.5)), force + 3 * k);
         bough_v3_store(bough_mat3_mul(axes, bough_between(a.moment, b.moment, 0.5)), moment + 3 * k);

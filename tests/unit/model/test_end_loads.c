@@ -87,24 +87,24 @@ TEST(the_moment_within_segments_is_a_parabola) {
     }
 }
 
-// The NREL blade under a weight that does not bend it: mass beyond a section and its first moment, from the
-// table. In the last of six segments it falls to a fiftieth.
+// A tapered and twisted blade of two segments, whose mass centre lies off its axis, under a weight that does
+// not bend it: the mass beyond a section and its first moments along and across the axis, from the table.
 TEST(the_mass_within_a_segment_is_that_of_the_table) {
-    static const double beyond[][3] = {{28, 5184.1375, 63416.21},
-                                       {53, 555.40676, 1931.5422},
-                                       {58, 155.60766, 225.70957},
-                                       {60, 47.709261, 27.064607}};
-    for (int k = 0; k < 8; k++) {
-        double load[4], at = beyond[k / 2][0];
-        static const char *const name[] = {"aSpn1FLx", "aSpn1FLy", "aSpn1MLx", "aSpn1MLy"};
-        for (int i = 0; i < 4; i++) {
-            load[i] = at_start(name[i],
+    static const double at[] = {2, 7, 9}, beyond[][3] = {{250.5, 743.83333, 3.4833611},
+                                                         {46.5, 54, 0.35001579},
+                                                         {8.5, 3.6666667, 0.01948564}};
+    static const char *const name[] = {"aSpn1FLx", "aSpn1FLy", "aSpn1MLx", "aSpn1MLy", "aSpn1MLz"};
+    for (int k = 0; k < 3; k++) {
+        double load[5];
+        for (int i = 0; i < 5; i++)
+            load[i] =
+                1e6 * at_start(name[i],
                                "gravity: [1e-3, 0, 0]\n" AT_REST "  - {name: a, fidelity: rod, rod: {table: "
-                               "%s/apps/turbine/blade-structure.yaml, segments: %d},\n" CLAMPED SENSOR,
-                               BOUGH_SOURCE_DIR, k % 2 ? 6 : 15, at);
-        }
-        check_near(hypot(load[0], load[1]) * 1e6, beyond[k / 2][1], 1e-6, 0);
-        check_near(hypot(load[2], load[3]) * 1e6, beyond[k / 2][2], 1e-6, 0);
+                               "%s/tests/data/scenes/example-structure.yaml, segments: 2},\n" CLAMPED SENSOR,
+                               BOUGH_SOURCE_DIR, at[k]);
+        check_near(hypot(load[0], load[1]), beyond[k][0], 1e-6, 0);
+        check_near(hypot(load[2], load[3]), beyond[k][1], 1e-6, 0);
+        check_near(load[4], beyond[k][2], 1e-6, 0);
     }
 }
 
