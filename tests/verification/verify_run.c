@@ -65,11 +65,6 @@ static bough_status do_static(bough_arena *arena, const bough_verify_case *x, bo
 
 // -- modes ----------------------------------------------------------------------------------------
 
-static double mode_value(const bough_rod_mode *mode, bough_verify_what what) {
-    if (what == BOUGH_VERIFY_DAMPING) return mode->damping;
-    return mode->frequency;
-}
-
 static double largest_growth(const bough_rod_mode_list *list) {
     double largest = 0;
     for (int k = 0; k < list->found; k++) {
@@ -113,8 +108,9 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x, bou
     for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
         const bough_verify_quantity *q = &x->expect[i].quantity;
         if (x->expect[i].diagnosis || q->index >= list.found) continue;
-        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(&list)
-                                                  : mode_value(&list.mode[q->index], q->what);
+        const bough_rod_mode *mode = &list.mode[q->index];
+        value[i] = q->what == BOUGH_VERIFY_DAMPING ? mode->damping : mode->frequency;
+        if (q->what == BOUGH_VERIFY_GROWTH) value[i] = largest_growth(&list);
     }
     return status;
 }

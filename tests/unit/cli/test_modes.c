@@ -23,16 +23,12 @@ static void build(setup *s, bough_two_mass masses) {
     s->def = (bough_modes_def){.state = s->m.y0, .input = s->whole->input, .point = 1};
 }
 
-static void find(setup *s, int wanted) {
-    s->count.wanted = wanted;
-    check_ok(bough_modes_find(s->m.arena, s->whole, &s->def, s->pair, &s->count));
-}
-
 // det(λ² M + λ C + K) = 0, and the shape's ratio is that of the first row.
 TEST(coupled_masses_have_their_eigenvalues) {
     setup s;
     build(&s, bough_two_mass_default());
-    find(&s, 2);
+    s.count.wanted = 2;
+    check_ok(bough_modes_find(s.m.arena, s.whole, &s.def, s.pair, &s.count));
     assert_int_equal(s.count.found, 2);
     for (int k = 0; k < 2; k++) {
         const bough_eigen_pair *p = &s.pair[k];

@@ -59,11 +59,10 @@ static bool stable(bough_master_def def) {
     bough_two_mass m = bough_two_mass_default();
     bool bounded = true;
     def.duration = 3000;
-    bough_status status = bough_two_mass_build(check_memory(), &m, def);
-    check_ok(status);
+    check_ok(bough_two_mass_build(check_memory(), &m, def));
     bough_two_mass_history(&m);
     while (bounded && !bough_master_done(m.master)) {
-        status = bough_step(m.master);
+        bough_status status = bough_step(m.master);
         bounded = bough_is_ok(&status) && fabs(m.mass[0].y[0]) < 1 && fabs(m.mass[1].y[0]) < 1;
     }
     return bounded;

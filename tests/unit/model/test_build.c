@@ -243,10 +243,9 @@ static bough_mat3 about(int axis, double angle) {
 // thin slices.
 static bough_inertia blade_about_hub(const bough_scene_body *body, double azimuth) {
     const bough_scene_structure *table = &body->rod.structure;
-    const double degree = BOUGH_PI / 180;
     enum { SLICES = 200 };
     bough_inertia sum = {0};
-    bough_mat3 lean = bough_mat3_product(about(0, azimuth), about(1, -2.5 * degree));
+    bough_mat3 lean = bough_mat3_product(about(0, azimuth), about(1, -2.5 * BOUGH_DEGREE));
     for (int k = 0; k + 1 < table->n_station; k++) {
         const bough_section_station *low = &table->station[k].def, *high = &table->station[k + 1].def;
         double thickness = (high->position.z - low->position.z) / SLICES;
@@ -259,7 +258,7 @@ static bough_inertia blade_about_hub(const bough_scene_body *body, double azimut
             double mass = thickness * (g * low->mass + f * high->mass);
             bough_mat3 own = {{thickness * ix, 0, 0}, {0, thickness * iy, 0}, {0, 0, thickness * (ix + iy)}};
             bough_transform x = {bough_scale(1.5 + z, lean.c3),
-                                 bough_mat3_product(lean, about(2, -twist - 6.5 * degree))};
+                                 bough_mat3_product(lean, about(2, -twist - 6.5 * BOUGH_DEGREE))};
             bough_inertia section = {mass, {0, 0, 0}, own};
             sum = bough_inertia_add(sum, bough_inertia_to_parent(&x, section));
         }

@@ -44,11 +44,6 @@ static bough_vec3 part(const double *a, int stride, int i) {
     return bough_v3(a[i], a[stride + i], a[2 * stride + i]);
 }
 
-static bough_vec3 inertia_times(const double j[6], bough_vec3 w) {
-    return bough_v3(j[0] * w.x + j[3] * w.y + j[4] * w.z, j[3] * w.x + j[1] * w.y + j[5] * w.z,
-                    j[4] * w.x + j[5] * w.y + j[2] * w.z);
-}
-
 // (11) in section axes for a vertex whose first moment lies along its axis, s = (0, 0, s), and
 // whose inertia is diagonal: solved by hand.
 static void balance(const bough_vertex_inertia *v, bough_vec3 f, bough_vec3 l, bough_vec3 *a,
@@ -74,7 +69,8 @@ static void vertex_rate(const absolute_bar *b, int i, double *rate) {
     bough_vec3 moment = bough_add(part(f + 3 * s, s, i), part(f + 6 * s, s, i - 1));
     bough_vec3 offset = v->moment, weight = {0, 0, -gravity}, a, alpha;
     bough_vec3 inner = bough_sub(bough_mat3_tmul(r, force), bough_cross(w, bough_cross(w, offset)));
-    bough_vec3 turn = bough_sub(moment, bough_cross(w, inertia_times(v->inertia, w)));
+    bough_vec3 spin = bough_mat3_mul(bough_mat3_symmetric(v->inertia), w);
+    bough_vec3 turn = bough_sub(moment, bough_cross(w, spin));
     balance(v, inner, turn, &a, &alpha);
     bough_vec3 udot = bough_add(bough_mat3_mul(r, a), weight);
     bough_quaternion pdot = bough_quaternion_product(p, (bough_quaternion){0, w.x, w.y, w.z});

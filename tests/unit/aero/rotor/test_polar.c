@@ -2,8 +2,6 @@
 
 #include "tests/unit/nrel5mw_aero.h"
 
-static const double degree = BOUGH_PI / 180;
-
 static bough_polar build(bough_arena *arena, const bough_polar_def *def) {
     bough_polar polar;
     bough_polar_build(arena, def, &polar);
@@ -16,7 +14,7 @@ TEST(knots_are_reproduced) {
         bough_polar polar = build(arena, nrel5mw_polars + p);
         for (int i = 0; i < nrel5mw_polars[p].n; i++) {
             const double *row = nrel5mw_polars[p].row + 4 * i;
-            bough_coefficients c = bough_polar_at(&polar, row[0] * degree);
+            bough_coefficients c = bough_polar_at(&polar, row[0] * BOUGH_DEGREE);
             check_near(c.lift, row[1], 1e-11, 1e-11);
             check_near(c.drag, row[2], 1e-11, 1e-11);
             check_near(c.moment, row[3], 1e-11, 1e-11);
@@ -34,7 +32,7 @@ TEST(interpolation_is_linear) {
         while (i < def->n - 2 && def->row[4 * (i + 1)] < a) i++;
         const double *r = def->row + 4 * i;
         double w = (a - r[0]) / (r[4] - r[0]);
-        bough_coefficients c = bough_polar_at(&polar, a * degree);
+        bough_coefficients c = bough_polar_at(&polar, a * BOUGH_DEGREE);
         check_near(c.lift, r[1] + w * (r[5] - r[1]), 1e-10, 1e-11);
         check_near(c.drag, r[2] + w * (r[6] - r[2]), 1e-10, 1e-11);
         check_near(c.moment, r[3] + w * (r[7] - r[3]), 1e-10, 1e-11);
@@ -73,9 +71,9 @@ TEST(gap_is_bridged) {
     const double row[] = {-90, 1, 0, 0, 90, 3, 0, 0};
     check_arena(arena);
     bough_polar polar = build(arena, &(bough_polar_def){.n = 2, .row = row});
-    check_near(bough_polar_at(&polar, 180 * degree).lift, 2, 1e-12, 0);
-    check_near(bough_polar_at(&polar, -135 * degree).lift, 1.5, 1e-12, 0);
-    check_near(bough_polar_at(&polar, 45 * degree).lift, 2.5, 1e-12, 0);
+    check_near(bough_polar_at(&polar, 180 * BOUGH_DEGREE).lift, 2, 1e-12, 0);
+    check_near(bough_polar_at(&polar, -135 * BOUGH_DEGREE).lift, 1.5, 1e-12, 0);
+    check_near(bough_polar_at(&polar, 45 * BOUGH_DEGREE).lift, 2.5, 1e-12, 0);
 }
 
 // Knots stay, slopes are continuous, and nothing overshoots; across the seam of the turn too. A
@@ -88,7 +86,7 @@ TEST(smooth_polars_are_monotone_and_smooth) {
         bough_polar_smoothen(arena, &polar);
         for (int i = 0; i + 1 < def->n; i++) {
             const double *r = def->row + 4 * i;
-            double a = r[0] * degree, b = r[4] * degree, h = 1e-7;
+            double a = r[0] * BOUGH_DEGREE, b = r[4] * BOUGH_DEGREE, h = 1e-7;
             check_near(bough_polar_at(&polar, a).lift, r[1], 1e-11, 1e-11);
             double at = bough_polar_at(&polar, a).lift;
             double left = (at - bough_polar_at(&polar, a - h).lift) / h;
@@ -108,7 +106,7 @@ TEST(smooth_polars_are_monotone_and_smooth) {
         error[fine] = 0;
         for (int i = 0; i < n; i++) {
             row[4 * i] = -180 + 360. * i / (n - 1);
-            row[4 * i + 1] = sin(row[4 * i] * degree);
+            row[4 * i + 1] = sin(row[4 * i] * BOUGH_DEGREE);
         }
         bough_polar polar = build(arena, &(bough_polar_def){.n = n, .row = row});
         bough_polar_smoothen(arena, &polar);
@@ -149,17 +147,17 @@ TEST(gaps_are_known) {
     bough_polar whole = build(arena, nrel5mw_polars + 4), mixed;
     for (int k = -4; k <= 4; k++) {
         double turned = 2 * BOUGH_PI * k;
-        assert_false(bough_polar_outside_table(&a, turned - 19.9 * degree));
-        assert_false(bough_polar_outside_table(&a, turned + 24.9 * degree));
-        assert_true(bough_polar_outside_table(&a, turned + 25.1 * degree));
-        assert_true(bough_polar_outside_table(&a, turned - 20.1 * degree));
+        assert_false(bough_polar_outside_table(&a, turned - 19.9 * BOUGH_DEGREE));
+        assert_false(bough_polar_outside_table(&a, turned + 24.9 * BOUGH_DEGREE));
+        assert_true(bough_polar_outside_table(&a, turned + 25.1 * BOUGH_DEGREE));
+        assert_true(bough_polar_outside_table(&a, turned - 20.1 * BOUGH_DEGREE));
         for (double d = -180; d <= 180; d += 7.5) {
-            assert_false(bough_polar_outside_table(&whole, turned + d * degree));
+            assert_false(bough_polar_outside_table(&whole, turned + d * BOUGH_DEGREE));
         }
     }
     bough_polar_blend(arena, &a, &b, 0.5, &mixed);
-    check_near(mixed.low, -20 * degree, 1e-12, 0);
-    check_near(mixed.high, 15 * degree, 1e-12, 0);
+    check_near(mixed.low, -20 * BOUGH_DEGREE, 1e-12, 0);
+    check_near(mixed.high, 15 * BOUGH_DEGREE, 1e-12, 0);
     bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
-    check_near(mixed.high, 25 * degree, 1e-12, 0);
+    check_near(mixed.high, 25 * BOUGH_DEGREE, 1e-12, 0);
 }

@@ -5,8 +5,6 @@
 
 #include <complex.h>
 
-static const double degree = BOUGH_PI / 180;
-
 typedef struct flow {
     double speed, alpha, rate;
 } flow;
@@ -54,12 +52,12 @@ TEST(parts_make_the_static_polar) {
         double most = 0;
         assert_true(foil->slope > 5 && foil->slope < 9);
         check_near(bough_polar_at(foil, foil->zero_lift).lift, 0, 0, 1e-12);
-        for (double alpha = -BOUGH_PI; alpha < BOUGH_PI; alpha += 0.1234 * degree) {
+        for (double alpha = -BOUGH_PI; alpha < BOUGH_PI; alpha += 0.1234 * BOUGH_DEGREE) {
             bough_stall_state s = {0};
             double lift = advance(foil, 3, (flow){50, alpha, 0}, 0, &s, NULL).lift;
             check_near(lift, bough_polar_at(foil, alpha).lift, 0, 1e-9);
             assert_true(s.separation >= 0 && s.separation <= 1);
-            if (fabs(alpha) > 60 * degree) check_near(s.separation, 0, 0, 0);
+            if (fabs(alpha) > 60 * BOUGH_DEGREE) check_near(s.separation, 0, 0, 0);
             most = fmax(most, s.separation);
         }
         assert_true(most > 0.95);
@@ -74,11 +72,12 @@ TEST(steady_limit_is_the_static_polar) {
         bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
             bough_stall_state s = {0};
-            bough_coefficients k = advance(&foil, 3, (flow){50, angle * degree, 0}, 0, &s, NULL);
-            check_static(&a->polar[p], angle * degree, k); // started in equilibrium
-            advance(&foil, 3, (flow){30, (angle + 170) * degree, 0.3}, 0.02, &s, NULL);
-            for (int i = 0; i < 4; i++) k = advance(&foil, 3, (flow){50, angle * degree, 0}, 1e3, &s, NULL);
-            check_static(&a->polar[p], angle * degree, k);
+            bough_coefficients k = advance(&foil, 3, (flow){50, angle * BOUGH_DEGREE, 0}, 0, &s, NULL);
+            check_static(&a->polar[p], angle * BOUGH_DEGREE, k); // started in equilibrium
+            advance(&foil, 3, (flow){30, (angle + 170) * BOUGH_DEGREE, 0.3}, 0.02, &s, NULL);
+            for (int i = 0; i < 4; i++)
+                k = advance(&foil, 3, (flow){50, angle * BOUGH_DEGREE, 0}, 1e3, &s, NULL);
+            check_static(&a->polar[p], angle * BOUGH_DEGREE, k);
         }
     }
 }
@@ -107,7 +106,7 @@ TEST(a_run_settles_on_the_static_polar) {
         for (int i = 0; i < ANGLES; i++) {
             foil[i] = polar + p;
             chord[i] = 3, speed[i] = 50, from[i] = polar[p].zero_lift;
-            alpha[i] = (i / 4. - 10) * degree;
+            alpha[i] = (i / 4. - 10) * BOUGH_DEGREE;
         }
         bough_stall_sections s = {ANGLES, foil, chord, speed, from, still, state};
         for (int i = 0; i <= STEPS; i++, s.alpha = alpha)
@@ -128,8 +127,8 @@ TEST(attached_lift_is_indicial) {
     airfoils *a = *context;
     bough_polar foil = a->plate;
     check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
-    check_near(foil.zero_lift, degree, 1e-9, 0);
-    const double speed = 40, chord = 2, amplitude = degree;
+    check_near(foil.zero_lift, BOUGH_DEGREE, 1e-9, 0);
+    const double speed = 40, chord = 2, amplitude = BOUGH_DEGREE;
     const double complex i1 = I;
     for (double k = 0.02; k < 0.7; k *= 2) {
         enum { PER_CYCLE = 400, CYCLES = 60 };
@@ -139,7 +138,7 @@ TEST(attached_lift_is_indicial) {
         bough_stall_state s = {0};
         for (int i = 0; i <= PER_CYCLE * CYCLES; i++) {
             double phase = 2 * BOUGH_PI * (i % PER_CYCLE) / PER_CYCLE;
-            flow inflow = {speed, 4 * degree + amplitude * sin(phase), 0};
+            flow inflow = {speed, 4 * BOUGH_DEGREE + amplitude * sin(phase), 0};
             double lift = advance(&foil, chord, inflow, step, &s, NULL).lift;
             if (i > PER_CYCLE * (CYCLES - 1)) got += lift * cexp(-i1 * phase) * 2 / PER_CYCLE;
         }
@@ -156,10 +155,10 @@ TEST(rotation_lifts) {
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_coefficients k = {0};
-    for (int i = 0; i < 3; i++) k = advance(&foil, 2, (flow){40, 4 * degree, 0.4}, 100, &s, NULL);
+    for (int i = 0; i < 3; i++) k = advance(&foil, 2, (flow){40, 4 * BOUGH_DEGREE, 0.4}, 100, &s, NULL);
     double x = 2 * 0.4 / 80;
-    check_near(k.lift, foil.slope * (3 * degree + x) + BOUGH_PI * x, 1e-9, 0);
-    check_near(k.drag, foil.slope * (3 * degree + x) * x, 1e-9, 0);
+    check_near(k.lift, foil.slope * (3 * BOUGH_DEGREE + x) + BOUGH_PI * x, 1e-9, 0);
+    check_near(k.drag, foil.slope * (3 * BOUGH_DEGREE + x) * x, 1e-9, 0);
     check_near(k.moment, -BOUGH_PI * x / 2, 1e-9, 0);
 }
 
@@ -169,25 +168,25 @@ TEST(withheld_lift_leans_back) {
     airfoils *a = *context;
     bough_polar foil = a->plate;
     bough_stall_state s = {0};
-    advance(&foil, 2, (flow){40, 4 * degree, 0}, 0, &s, NULL);
-    advance(&foil, 2, (flow){40, 4 * degree, 0}, 100, &s, NULL);
-    bough_coefficients k = advance(&foil, 2, (flow){40, 6 * degree, 0}, 1e-7, &s, NULL);
-    check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
-    check_near(k.drag, degree * k.lift, 1e-4, 0);
+    advance(&foil, 2, (flow){40, 4 * BOUGH_DEGREE, 0}, 0, &s, NULL);
+    advance(&foil, 2, (flow){40, 4 * BOUGH_DEGREE, 0}, 100, &s, NULL);
+    bough_coefficients k = advance(&foil, 2, (flow){40, 6 * BOUGH_DEGREE, 0}, 1e-7, &s, NULL);
+    check_near(k.lift, foil.slope * 4 * BOUGH_DEGREE, 1e-5, 0);
+    check_near(k.drag, BOUGH_DEGREE * k.lift, 1e-4, 0);
 }
 
 // After a small step of the angle of attack the attached lift follows the polar's own indicial function.
 TEST(indicial_lift_is_the_polars) {
     airfoils *a = *context;
     static const double k[] = {0.3, 0.7, 0.14, 0.53};
-    const double chord = 2, speed = 40, step = 0.01 * degree;
+    const double chord = 2, speed = 40, step = 0.01 * BOUGH_DEGREE;
     bough_polar_def def = {.n = 4, .row = &plate_rows[0][0], .indicial = k};
     bough_polar foil;
     bough_polar_build(a->arena, &def, &foil);
     bough_stall_state s = {0};
-    advance(&foil, chord, (flow){speed, 4 * degree, 0}, 0, &s, NULL);
-    double before = bough_polar_at(&foil, 4 * degree).lift;
-    flow after = {speed, 4 * degree + step, 0};
+    advance(&foil, chord, (flow){speed, 4 * BOUGH_DEGREE, 0}, 0, &s, NULL);
+    double before = bough_polar_at(&foil, 4 * BOUGH_DEGREE).lift;
+    flow after = {speed, 4 * BOUGH_DEGREE + step, 0};
     advance(&foil, chord, after, 1e-9, &s, NULL);
     for (int i = 1; i <= 10; i++) {
         double lift = advance(&foil, chord, after, 0.5 * chord / speed, &s, NULL).lift;
@@ -229,7 +228,7 @@ static loop run_loop(const bough_polar *foil, double mean, double amplitude, int
 TEST(lags_are_those_of_the_theory) {
     airfoils *a = *context;
     const double lag[] = {1.7, 3}, away = 1e-3, step = 0.01;
-    flow in = {20, 14 * degree, 0};
+    flow in = {20, 14 * BOUGH_DEGREE, 0};
     for (int k = 0; k < 2; k++) {
         bough_stall_state state = {0};
         advance(&a->polar[7], 1, in, 0, &state, NULL);
@@ -245,13 +244,14 @@ TEST(lags_are_those_of_the_theory) {
 TEST(stall_loop_is_closed) {
     airfoils *a = *context;
     bough_polar foil = a->polar[7];
-    loop coarse = run_loop(&foil, 12 * degree, 5 * degree, 6, 200);
-    loop middle = run_loop(&foil, 12 * degree, 5 * degree, 6, 400);
-    loop fine = run_loop(&foil, 12 * degree, 5 * degree, 6, 800);
+    loop coarse = run_loop(&foil, 12 * BOUGH_DEGREE, 5 * BOUGH_DEGREE, 6, 200);
+    loop middle = run_loop(&foil, 12 * BOUGH_DEGREE, 5 * BOUGH_DEGREE, 6, 400);
+    loop fine = run_loop(&foil, 12 * BOUGH_DEGREE, 5 * BOUGH_DEGREE, 6, 800);
     assert_true(fine.gap < 1e-6);
     assert_true(fine.up > fine.down + 0.1);
     double most = 0;
-    for (double d = 7; d <= 17; d += 0.1) most = fmax(most, bough_polar_at(&a->polar[7], d * degree).lift);
+    for (double d = 7; d <= 17; d += 0.1)
+        most = fmax(most, bough_polar_at(&a->polar[7], d * BOUGH_DEGREE).lift);
     assert_true(fine.highest > most + 0.05); // stall is late
     print_message("loop: up %.4f, down %.4f, highest %.4f (static %.4f), area %.5f\n", fine.up, fine.down,
                   fine.highest, most, fine.area);
@@ -268,9 +268,9 @@ TEST(slopes_are_those_of_an_advance) {
     for (int p = 0; p < 8; p++) {
         bough_polar foil = a->polar[p];
         for (int i = 0; i < 6; i++) {
-            double alpha = angle[i] * degree;
+            double alpha = angle[i] * BOUGH_DEGREE;
             bough_stall_state before = {0};
-            flow inflow = {50, alpha - 3 * degree, 0};
+            flow inflow = {50, alpha - 3 * BOUGH_DEGREE, 0};
             advance(&foil, chord, inflow, 0, &before, NULL);
             bough_coefficients change[2][2];
             for (int k = 0; k < 4; k++) {

@@ -2,8 +2,6 @@
 
 #include "tests/unit/check.h"
 
-static const double degree = BOUGH_PI / 180;
-
 // The NREL 5 MW tower as a cone.
 static bough_tower build(bough_arena *arena, bough_vec3 base) {
     static const double height[] = {0, 87.6}, diameter[] = {6, 3.87};
@@ -38,7 +36,7 @@ TEST(wind_at_passing_blade_matches_reference) {
     check_arena(arena);
     bough_tower tower = build(arena, bough_v3(0, 0, 0));
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        double azimuth = table[i][0] * degree;
+        double azimuth = table[i][0] * BOUGH_DEGREE;
         bough_vec3 outer = wind_at_blade(&tower, azimuth, 52.75);
         check_near(outer.x, table[i][1], 1e-6, 0);
         check_near(outer.y * cos(azimuth), table[i][2], 1e-5, 1e-6);

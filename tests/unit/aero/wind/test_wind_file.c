@@ -5,8 +5,6 @@
 
 #include <unistd.h>
 
-static const double degree = BOUGH_PI / 180;
-
 typedef struct place {
     bough_arena *arena;
     char path[SCRATCH_NAME];
@@ -72,10 +70,11 @@ TEST_WITH(hub_rows_are_interpolated, set_up, tear_down) {
     check_vec(bough_wind_at(&wind, above, 10), 12 * pow(2, 0.2), 0, 1);
     check_vec(bough_wind_at(&wind, bough_v3(0, 0, -1), 10), 0, 0, 1);
     // 10 (1 + 0.1·50/126 + 0.3·21/126) + 2 towards −30°, 50 m beside the axis.
-    bough_vec3 beside = bough_v3(50 * sin(30 * degree), 50 * cos(30 * degree), 111);
+    bough_vec3 beside = bough_v3(50 * sin(30 * BOUGH_DEGREE), 50 * cos(30 * BOUGH_DEGREE), 111);
     double speed = 12 + 10 * (0.1 * 50 + 0.3 * 21) / 126;
-    check_vec(bough_wind_at(&wind, beside, 20), speed * cos(30 * degree), -speed * sin(30 * degree), 0);
-    check_vec(bough_wind_at(&wind, hub, 99), 10 * cos(8 * degree), 0, 10 * sin(8 * degree));
+    check_vec(bough_wind_at(&wind, beside, 20), speed * cos(30 * BOUGH_DEGREE),
+              -speed * sin(30 * BOUGH_DEGREE), 0);
+    check_vec(bough_wind_at(&wind, hub, 99), 10 * cos(8 * BOUGH_DEGREE), 0, 10 * sin(8 * BOUGH_DEGREE));
 }
 
 // A shear that comes and goes between two samples, 10 m/s at the half of the reference length above the hub.
@@ -238,7 +237,7 @@ TEST_WITH(direction_turns_a_file, set_up, tear_down) {
     bough_wind wind;
     fill_box(bytes, 7);
     write_file(p, bytes, SIZE);
-    bough_wind_def def = {.source = BOUGH_WIND_BOX_FILE, .file = p->path, .direction = 90 * degree};
+    bough_wind_def def = {.source = BOUGH_WIND_BOX_FILE, .file = p->path, .direction = 90 * BOUGH_DEGREE};
     check_ok(bough_wind_build(p->arena, &def, &wind));
     bough_vec3 e = expected(1, -20, 70), v = bough_wind_at(&wind, bough_v3(20, 45, 70), 1);
     check_vec(v, -e.y, e.x, e.z);

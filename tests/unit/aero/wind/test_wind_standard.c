@@ -8,8 +8,6 @@
 
 #include <unistd.h>
 
-static const double degree = BOUGH_PI / 180;
-
 static bough_wind_def standard(int condition, double speed) {
     bough_wind_def def = bough_wind_def_default();
     def.source = BOUGH_WIND_STANDARD;
@@ -29,9 +27,7 @@ static bough_wind_def standard(int condition, double speed) {
 
 static bough_wind built(bough_arena *arena, const bough_wind_def *def) {
     bough_wind wind;
-    bough_status status = bough_wind_build(arena, def, &wind);
-    assert_string_equal(status.message, "");
-    assert_int_equal(status.code, BOUGH_OK);
+    check_ok(bough_wind_build(arena, def, &wind));
     return wind;
 }
 
@@ -79,7 +75,7 @@ TEST(gusts_reach_what_the_formulas_say) {
     ecd.iec.negative = 1;
     w = built(arena, &ecd);
     end = bough_wind_at(&w, hub, 10);
-    check_near(atan2(end.y, end.x), 60 * degree, 1e-13, 0);
+    check_near(atan2(end.y, end.x), 60 * BOUGH_DEGREE, 1e-13, 0);
     check_near(hypot(end.x, end.y), 27, 1e-13, 0);
 
     bough_wind_def ews = standard(BOUGH_WIND_EWS, 25);
@@ -100,20 +96,23 @@ TEST(gusts_reach_what_the_formulas_say) {
 
 TEST(upflow_and_veer_turn_any_wind) {
     check_arena(arena);
-    bough_wind_def def = {
-        .speed = 10, .vertical = 1, .upflow = 8 * degree, .veer = 0.1 * degree, .reference_height = 90};
+    bough_wind_def def = {.speed = 10,
+                          .vertical = 1,
+                          .upflow = 8 * BOUGH_DEGREE,
+                          .veer = 0.1 * BOUGH_DEGREE,
+                          .reference_height = 90};
     bough_wind w = built(arena, &def);
-    double c = cos(8 * degree), s = sin(8 * degree);
+    double c = cos(8 * BOUGH_DEGREE), s = sin(8 * BOUGH_DEGREE);
     bough_vec3 hub = bough_wind_at(&w, bough_v3(0, 0, 90), 0);
     check_near(hub.x, 10 * c - s, 1e-14, 0);
     check_near(hub.z, 10 * s + c, 1e-14, 0);
     bough_vec3 above = bough_wind_at(&w, bough_v3(0, 0, 140), 0);
-    check_near(atan2(-above.y, above.x), 5 * degree, 1e-13, 0);
+    check_near(atan2(-above.y, above.x), 5 * BOUGH_DEGREE, 1e-13, 0);
     check_near(above.z, hub.z, 1e-14, 0);
-    def.direction = 30 * degree;
+    def.direction = 30 * BOUGH_DEGREE;
     w = built(arena, &def);
     above = bough_wind_at(&w, bough_v3(0, 0, 140), 0);
-    check_near(atan2(above.y, above.x), 25 * degree, 1e-13, 0);
+    check_near(atan2(above.y, above.x), 25 * BOUGH_DEGREE, 1e-13, 0);
 }
 
 TEST(senseless_conditions_are_refused) {
@@ -286,7 +285,7 @@ TEST(a_seed_gives_the_same_bits) {
 TEST(a_box_is_shared) {
     check_arena(arena);
     bough_wind_def def = standard(BOUGH_WIND_NTM, 10);
-    def.upflow = 4 * degree;
+    def.upflow = 4 * BOUGH_DEGREE;
     bough_wind first = built(arena, &def);
     def.box = first.box;
     bough_wind second = built(arena, &def);
