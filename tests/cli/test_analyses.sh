@@ -225,7 +225,25 @@ modes() {
         --set 'modes={about: hub, axis: [1, 0, 0]}'
 }
 
+# A scene without states: a spring between the ground and a body that is fixed to it.
+still() {
+    cat >../still.yaml <<'EOF'
+simulation: {duration: 0.1 s, macro_step: 10 ms}
+bodies:
+  - {name: wall, fidelity: rigid, mass: 1 kg, inertia: [1, 1, 1], joint: {kind: fixed, parent: ground}}
+springs: [{name: stay, from: ground, from_point: [3, 0, 4], to: wall, stiffness: 10, length: 2}]
+EOF
+    for scheme in monolithic iterated; do
+        expect 0 run ../still.yaml --out still --set simulation.coupling.scheme=$scheme
+        awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+            { last = $at["stayFrc"] } END { print "stayFrc", last }' still/channels.out >../still
+        near ../still stayFrc 2 30 1e-9
+        rm -r still
+    done
+}
+
 statics
 sensed
+still
 modes
 [ $failures -eq 0 ]

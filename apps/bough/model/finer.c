@@ -40,7 +40,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     static const int parts = BOUGH_FINEST_TIME | BOUGH_FINER_AIR;
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
     const bough_scene *scene = run->scene;
-    if (!is_wanted(scene)) return bough_ok();
+    if (!is_wanted(scene) || run->master->assembly->n_state == 0) return bough_ok(); // nothing moves
     BOUGH_TRY(bough_other_run_build(arena, run, parts, &f->other));
     f->follows = true;
     f->ratio = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_ratio();
