@@ -248,28 +248,21 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
 bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                           const double *state, const double *input, bough_rod_scratch *scratch, double *rate);
 
-// The same at another time and input, `state` being that of the last bough_rod_derivative with this
-// scratch: only segments that touch the input, or have ramped loads, are evaluated again. In the others
-// the forces change by what loads along them do to an unbent segment, for the derivative
-// by time: its relative error is of the order of the segment's own rotation.
+// The same at another time and input, for ∂f/∂t; `state` is that of the last bough_rod_derivative with this
+// scratch. Only segments that touch the input, or have ramped loads, are evaluated again. In the others the
+// forces change as loads along them change those of an unbent segment: a relative error of the order of the
+// segment's own rotation.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                                 const double *state, const double *input, bough_rod_scratch *scratch,
                                 double *rate);
 
-// The root wrench (6).
-void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const double *state, const double *input, bough_rod_scratch *scratch,
-                           double *wrench);
-
-// Of a rod that carries bodies: the wrench on its carrier, and that on the bodies at its end, without inertia
-// and weight of the last vertex: force in BRF axes, moment in section axes (6 each).
+// The outputs: the wrench on the carrier (6), and of a rod that carries bodies that on them, without inertia
+// and weight of the last vertex (6): force in BRF axes, moment in section axes.
 void bough_rod_wrenches(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
                         const double *input, bough_rod_scratch *scratch, double *wrench);
 
-// Both where scratch has the forces and loads of a derivative.
-void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                   double *wrench);
-void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch, double *wrench);
+// The same where scratch has the forces and loads of a derivative.
+void bough_rod_present_wrenches(const bough_rod_model *m, const bough_rod_scratch *scratch, double *wrench);
 
 // Loads at time t into scratch, after a gathering.
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
@@ -286,7 +279,6 @@ BOUGH_DECLARE_LEVELS(bough_rod_forces);
 BOUGH_DECLARE_LEVELS(bough_rod_load);
 BOUGH_DECLARE_LEVELS(bough_rod_derivative);
 BOUGH_DECLARE_LEVELS(bough_rod_derivative_again);
-BOUGH_DECLARE_LEVELS(bough_rod_root_wrench);
 BOUGH_DECLARE_LEVELS(bough_rod_wrenches);
 BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
 #define bough_rod_gather(m, ...) BOUGH_OF_LEVEL(bough_rod_gather, (m)->level)(m, __VA_ARGS__)
@@ -295,6 +287,5 @@ BOUGH_DECLARE_LEVELS(bough_rod_line_strain);
 #define bough_rod_derivative(m, ...) BOUGH_OF_LEVEL(bough_rod_derivative, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_derivative_again(m, ...)                                                                   \
     BOUGH_OF_LEVEL(bough_rod_derivative_again, (m)->level)(m, __VA_ARGS__)
-#define bough_rod_root_wrench(m, ...) BOUGH_OF_LEVEL(bough_rod_root_wrench, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_wrenches(m, ...) BOUGH_OF_LEVEL(bough_rod_wrenches, (m)->level)(m, __VA_ARGS__)
 #define bough_rod_line_strain(m, ...) BOUGH_OF_LEVEL(bough_rod_line_strain, (m)->level)(m, __VA_ARGS__)

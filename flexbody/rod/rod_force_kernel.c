@@ -403,25 +403,17 @@ bool AT(derivative_again)(const bough_rod_model *m, const bough_rod_loads *loads
     return ok && balance_vertices(m, state, input, scratch, rate);
 }
 
-void AT(root_wrench)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
-                     const double *input, bough_rod_scratch *scratch, double *wrench) {
-    gather_input(m, input, scratch);
-    gather_state(m, state, 1, 1, scratch->vertex);
-    load_end(m, loads, t, 0, 0, scratch);
-    AT(forces)(m, 0, 1, scratch);
-    bough_rod_present_root_wrench(m, scratch, wrench);
-}
-
 void AT(wrenches)(const bough_rod_model *m, const bough_rod_loads *loads, double t, const double *state,
                   const double *input, bough_rod_scratch *scratch, double *wrench) {
     int end = m->n_segment;
+    bool carries = bough_rod_carries(m);
     gather_input(m, input, scratch);
     gather_state(m, state, 1, 1, scratch->vertex);
-    gather_state(m, state, m->n, m->n, scratch->vertex);
+    if (carries) gather_state(m, state, m->n, m->n, scratch->vertex);
     load_end(m, loads, t, 0, 0, scratch);
-    if (loads->ramped == NULL) load_end(m, loads, t, end, end - 1, scratch); // else both are loaded
+    if (carries && loads->ramped == NULL)
+        load_end(m, loads, t, end, end - 1, scratch); // else both are loaded
     AT(forces)(m, 0, 1, scratch);
-    AT(forces)(m, end - 1, end, scratch);
-    bough_rod_present_root_wrench(m, scratch, wrench);
-    bough_rod_present_end_wrench(m, scratch, wrench + BOUGH_ROD_OUTPUTS);
+    if (carries) AT(forces)(m, end - 1, end, scratch);
+    bough_rod_present_wrenches(m, scratch, wrench);
 }

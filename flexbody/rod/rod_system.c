@@ -227,10 +227,7 @@ static bool derivative(void *self, double t, const double *state, const double *
 
 static void output(void *self, double t, const double *state, const double *input, double *wrench) {
     bough_rod_body *b = self;
-    if (bough_rod_carries(b->model))
-        bough_rod_wrenches(b->model, &b->loads, t, state, input, &b->scratch, wrench);
-    else
-        bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
+    bough_rod_wrenches(b->model, &b->loads, t, state, input, &b->scratch, wrench);
 }
 
 // The wrenches by the forces of the derivative just evaluated, and of the second derivative what the first
@@ -243,10 +240,7 @@ static bool evaluate(void *self, const double *state, int n, const bough_evaluat
         ok = k == 0
                  ? derivative(b, t, state, input, at[k].rate)
                  : bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, at[k].rate);
-        if (at[k].output == NULL) continue;
-        bough_rod_present_root_wrench(b->model, &b->scratch, at[k].output);
-        if (!bough_rod_carries(b->model)) continue;
-        bough_rod_present_end_wrench(b->model, &b->scratch, at[k].output + BOUGH_ROD_OUTPUTS);
+        if (at[k].output != NULL) bough_rod_present_wrenches(b->model, &b->scratch, at[k].output);
     }
     return ok;
 }

@@ -96,7 +96,7 @@ static void compare(pair *p, double small, double *rates, double *wrenches) {
     }
     memcpy(state, bough_modal_body_vertices(p->modal, y, swaying, 1), sizeof state);
     bough_rod_derivative(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, expected);
-    bough_rod_root_wrench(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, other);
+    bough_rod_wrenches(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, other);
     *rates = *wrenches = 0;
     for (int k = 0; k < STATES; k++) {
         *rates = fmax(*rates, fabs((moved[0][k] - moved[1][k]) / (2 * step) - expected[k]));

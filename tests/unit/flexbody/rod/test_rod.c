@@ -53,7 +53,7 @@ TEST_WITH(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown) {
             check_near(f->scratch.segment[k * f->model->stride + n], 0, 0, 1e-12);
         }
     }
-    bough_rod_root_wrench(f->model, &f->loads, 0, f->state, f->input, &f->scratch, wrench);
+    bough_rod_wrenches(f->model, &f->loads, 0, f->state, f->input, &f->scratch, wrench);
     for (int k = 0; k < 6; k++) check_near(wrench[k], 0, 0, 1e-12);
 }
 
@@ -110,7 +110,7 @@ static bough_wrench momentum(const bough_rod_model *m, const double *y) {
 static bough_wrench outer_forces(fixture *f) {
     const bough_vec3 gravity = {f->input[6], f->input[7], f->input[8]};
     double root[6];
-    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, root);
+    bough_rod_wrenches(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, root);
     bough_wrench sum = bough_wrench_sub((bough_wrench){{0, 0, 0}, {0, 0, 0}}, bough_wrench_load(root));
     for (int i = 0; i <= N; i++) {
         double load[6];
@@ -290,7 +290,7 @@ TEST_WITH(second_evaluation_is_no_other_after_a_wrench, setup, teardown) {
     for (int asked = 0; asked < 2; asked++) {
         derivative(f, f->state, f->input, first);
         if (asked) {
-            bough_rod_root_wrench(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, wrench);
+            bough_rod_wrenches(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, wrench);
         }
         assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch,
                                                again[asked]));
@@ -311,7 +311,7 @@ TEST_WITH(follower_load_turns_with_its_section, setup, teardown) {
     double *value = ramped(f, true)->value;
     for (int k = 0; k < 6 * s; k++) value[k] = sample_random(&seed);
     derivative(f, f->state, f->input, with);
-    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[0]);
+    bough_rod_wrenches(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[0]);
     f->loads.ramped = NULL;
     for (int i = 0; i <= N; i++) {
         bough_quaternion p = f->model->rotation0[0];
@@ -327,7 +327,7 @@ TEST_WITH(follower_load_turns_with_its_section, setup, teardown) {
         }
     }
     derivative(f, f->state, f->input, same);
-    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[1]);
+    bough_rod_wrenches(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[1]);
     for (int k = 0; k < STATES; k++) check_near(with[k], same[k], 1e-12, 1e-12);
     for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
 }
