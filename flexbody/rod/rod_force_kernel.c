@@ -40,11 +40,7 @@ BOUGH_INLINE void gather_some(const bough_rod_model *m, const double *restrict s
 
 // Moving vertices first to last.
 static void gather_state(const bough_rod_model *m, const double *state, int first, int last, double *vertex) {
-    int n = last + 1 - first, end = first + whole_vectors(n, BOUGH_WIDTH);
-    bool more = one_more_vector(n, BOUGH_WIDTH);
-    for (int i = first; i < end; i += BOUGH_WIDTH) gather_some(m, state, i, BOUGH_WIDTH, vertex);
-    if (more) gather_some(m, state, last + 1 - BOUGH_WIDTH, BOUGH_WIDTH, vertex);
-    for (int i = end; i <= last && !more; i++) gather_some(m, state, i, 1, vertex);
+    FOR_VECTORS(first, last, gather_some(m, state, v, count, vertex));
 }
 
 void AT(gather)(const bough_rod_model *m, const double *state, const double *input,
@@ -339,11 +335,8 @@ BOUGH_INLINE void vertex_kinematics(int n, const double *restrict state, const d
 // The balances of all vertices under the segments' forces in scratch.
 static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
                              const bough_rod_scratch *scratch, double *restrict rate) {
-    int n = m->n, whole = whole_vectors(n, BOUGH_WIDTH);
-    bool more = one_more_vector(n, BOUGH_WIDTH);
-    for (int i = 1; i <= whole; i += BOUGH_WIDTH) vertex_kinematics(n, state, input, i, BOUGH_WIDTH, rate);
-    if (more) vertex_kinematics(n, state, input, n + 1 - BOUGH_WIDTH, BOUGH_WIDTH, rate);
-    for (int i = whole + 1; i <= n && !more; i++) vertex_kinematics(n, state, input, i, 1, rate);
+    int n = m->n;
+    FOR_VECTORS(1, n, vertex_kinematics(n, state, input, v, count, rate));
     accelerate_vertices(m, scratch, input, rate);
     double sum = 0; // NaN and infinity survive a sum of squares
     int last = BOUGH_ROD_STATES * n;

@@ -11,9 +11,24 @@
 // How many of n vertices fill whole vectors of a kernel's width.
 BOUGH_INLINE int whole_vectors(int n, int width) { return n - n % width; }
 
-// Whether the others go by one more vector that ends with the last vertex: it repeats some of the vector
-// before, and takes less time than they do one by one.
-BOUGH_INLINE bool one_more_vector(int n, int width) { return n > width && n % width > 1; }
+// Calls the expression behind `last` for `count` vertices from v on, through the vertices first to last: for
+// whole vectors of the kernel's width, then for one that ends with the last vertex. This one repeats some of
+// the vector before, and takes less time than a call for each vertex that is left.
+#define FOR_VECTORS(first, last, ...)                                                                        \
+    do {                                                                                                     \
+        int left_ = (last) + 1 - (first), end_ = (first) + whole_vectors(left_, BOUGH_WIDTH);                \
+        bool repeats_ = left_ > BOUGH_WIDTH && (last) > end_;                                                \
+        {                                                                                                    \
+            enum { count = BOUGH_WIDTH };                                                                    \
+            for (int v = (first); v < end_; v += count) __VA_ARGS__;                                         \
+            if (repeats_) {                                                                                  \
+                int v = (last) + 1 - count;                                                                  \
+                __VA_ARGS__;                                                                                 \
+            }                                                                                                \
+        }                                                                                                    \
+        enum { count = 1 };                                                                                  \
+        for (int v = end_; v <= (last) && !repeats_; v++) __VA_ARGS__;                                       \
+    } while (0)
 
 BOUGH_INLINE vertex_state load_vertex(const double *restrict v, int s, int i) {
     return (vertex_state){lane_load(v, s, i), lane_load(v + 7 * s, s, i), lane_load(v + 10 * s, s, i),

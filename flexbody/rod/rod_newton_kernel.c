@@ -35,9 +35,7 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
         for (int j = 0; j < 3; j++) {
             bough_vec3 b = bough_scale(1 / e, solve_cross(a, bough_unit3(j)));
             b = bough_axpy(-weight * bough_dot(q, b), bq, b);
-            kept[(KEPT_TURN + j) * s + v] = b.x;
-            kept[(KEPT_TURN + 3 + j) * s + v] = b.y;
-            kept[(KEPT_TURN + 6 + j) * s + v] = b.z;
+            lane_store(kept + (KEPT_TURN + 3 * j) * s, s, v, b);
         }
         kept[KEPT_SCALE * s + v] = 1 / f;
     }
@@ -47,7 +45,7 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
 // vertices, of rotations in 3..5.
 typedef struct elimination {
     double shift[3][3]; // by columns
-    const double *turn; // row 3 i + k of A_φ at [(3 i + k)·stride]
+    const double *turn; // entry (i, k) of A_φ at [(3 k + i)·stride]
     int stride;
     double square; // γ²
 } elimination;
@@ -59,7 +57,7 @@ BOUGH_INLINE void form_column(const elimination *e, int v, int j, const double *
     const double *restrict k = position + (j < 3 ? 0 : BOUGH_COLUMN * 3);
     double a[3];
     for (int i = 0; i < 3; i++) {
-        a[i] = j < 3 ? e->shift[j][i] : e->square * e->turn[(3 * i + j - 3) * e->stride + v];
+        a[i] = j < 3 ? e->shift[j][i] : e->square * e->turn[(3 * (j - 3) + i) * e->stride + v];
     }
 #pragma omp simd
     for (int i = 0; i < BOUGH_COLUMN; i++) {
@@ -128,10 +126,7 @@ BOUGH_INLINE void eliminate_residual(const bough_rod_model *m, const bough_rod_t
             bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
         rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
         lane_store(q, s, v, solve_cross(g, rx));
-        for (int i = 0; i < 3; i++) {
-            q[(3 + i) * s + v] = turn[3 * i * s + v] * rho.x + turn[(3 * i + 1) * s + v] * rho.y +
-                                 turn[(3 * i + 2) * s + v] * rho.z;
-        }
+        lane_store(q + 3 * s, s, v, bough_mat3_mul(lane_load_matrix(turn, s, v), rho));
         q[WORK_SCALAR * s + v] = scalar;
     }
 }
@@ -232,9 +227,7 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
         bough_vec3 shift = solve_cross(g, bough_scale(gamma, du));
         lane_store(x, n, i, bough_add(lane_load(q, s, v), shift));
         // δφ = A_φ (ρ + γ δW)
-        bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
-                          turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
-                          turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
+        bough_vec3 phi = bough_mat3_mul(lane_load_matrix(turn, s, v), dw);
         phi = bough_add(phi, lane_load(q + 3 * s, s, v));
         bough_vec3 slip =
             bough_sub(lane_load(kept + KEPT_W * s, s, v), lane_load(kept + KEPT_OMEGA * s, s, v));
@@ -253,22 +246,14 @@ BOUGH_INLINE void recover(const bough_rod_model *m, const bough_rod_tangent *k, 
 
 void AT(solve)(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
-    int n = m->n, whole = whole_vectors(n, BOUGH_WIDTH), last = n + 1 - BOUGH_WIDTH;
-    bool more = one_more_vector(n, BOUGH_WIDTH);
     // M r_v + γ K A r_q
-    for (int v = 1; v <= whole; v += BOUGH_WIDTH) eliminate_residual(m, k, x, v, BOUGH_WIDTH, k->work);
-    if (more) eliminate_residual(m, k, x, last, BOUGH_WIDTH, k->work);
-    for (int v = whole + 1; v <= n && !more; v++) eliminate_residual(m, k, x, v, 1, k->work);
+    FOR_VECTORS(1, m->n, eliminate_residual(m, k, x, v, count, k->work));
     segment_residual(m, k, k->work, k->force);
-    for (int v = 1; v <= whole; v += BOUGH_WIDTH) velocity_residual(m, k, x, v, BOUGH_WIDTH, k->work);
-    if (more) velocity_residual(m, k, x, last, BOUGH_WIDTH, k->work);
-    for (int v = whole + 1; v <= n && !more; v++) velocity_residual(m, k, x, v, 1, k->work);
+    FOR_VECTORS(1, m->n, velocity_residual(m, k, x, v, count, k->work));
     // the block-tridiagonal system in the velocities
     pack(m->n, m->stride, velocity, k->packed);
     BOUGH_AT_LEVEL(bough_block_tridiagonal_solve)(&k->matrix, k->packed);
     unpack(m->n, m->stride, k->packed, velocity);
     // the configuration
-    for (int v = 1; v <= whole; v += BOUGH_WIDTH) recover(m, k, k->work, v, BOUGH_WIDTH, x);
-    if (more) recover(m, k, k->work, last, BOUGH_WIDTH, x);
-    for (int v = whole + 1; v <= n && !more; v++) recover(m, k, k->work, v, 1, x);
+    FOR_VECTORS(1, m->n, recover(m, k, k->work, v, count, x));
 }

@@ -16,7 +16,7 @@ enum {
     KEPT_W = 4,      // W
     KEPT_OMEGA = 7,  // Rᵀω
     KEPT_R = 10,     // R by columns
-    KEPT_TURN = 19,  // elimination of rotations A_φ, by rows
+    KEPT_TURN = 19,  // elimination of rotations A_φ, by columns
     KEPT_SCALE = 28, // 1/(factor of the quaternion's scale)
     KEPT = 29,
 };
