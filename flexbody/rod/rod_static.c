@@ -59,11 +59,6 @@ static bough_vec3 stretched(const segment_geometry *before, const segment_geomet
     return bough_scale(h, bough_axpy(1 / (6 + bough_dot(v, v)), bow, y));
 }
 
-static void put_vertex(double *to, int stride, const vertex_state *v) {
-    const double values[7] = {v->x.x, v->x.y, v->x.z, v->p.w, v->p.x, v->p.y, v->p.z};
-    for (int c = 0; c < 7; c++) to[c * stride] = values[c];
-}
-
 void bough_rod_move(const bough_rod_model *m, const double *change, double fraction, double *state,
                     double *end) {
     vertex_state old = {.x = m->position0[0], .p = m->rotation0[0]}, now = old;
@@ -80,7 +75,8 @@ void bough_rod_move(const bough_rod_model *m, const double *change, double fract
         segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
         bough_vec3 chord = stretched(&before, &after, m->length[i], dl, dr);
         moved.x = bough_add(now.x, bough_mat3_mul(after.r, chord));
-        put_vertex(i < m->n ? state + i : end, row.stride, &moved);
+        const double values[] = {moved.x.x, moved.x.y, moved.x.z, moved.p.w, moved.p.x, moved.p.y, moved.p.z};
+        for (int c = 0; c < BOUGH_ROD_U; c++) (i < m->n ? state + i : end)[c * row.stride] = values[c];
         old = r;
         now = moved;
         dl = dr;
@@ -93,13 +89,16 @@ static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
 
 enum { BAND = 11, BAND_ROWS = 3 * BAND + 1 }; // of the stiffness, on either side of its diagonal
 
-enum { SHORTENED = 8 }; // steps of an increment; more end in other equilibria
+// Of the residual force, relative to the largest load or stress resultant, or of the last step [rad, lengths
+// of the rod]
+static const double tolerance = 1e-10;
 
-enum { EASY = 8 }; // iterations of an increment that encourage a larger one
-
-bough_rod_static_options bough_rod_static_options_default(void) {
-    return (bough_rod_static_options){1e-10, 1, 12, 30};
-}
+enum {
+    MOST_ITERATIONS = 30, // of Newton's method in an increment
+    EASY = 8,             // iterations of an increment that encourage a larger one
+    SHORTENED = 8,        // steps of an increment; more end in other equilibria
+    HALVINGS = 12,        // of the whole load before giving up
+};
 
 // Beyond this slenderness rounding can keep Newton's method from converging.
 static const double slender = 1e12;
@@ -159,16 +158,12 @@ static double magnitude(const bough_rod_model *m, const bough_rod_static *w) {
     return largest;
 }
 
-static bough_vec3 step_of(const double *step, int i, int from) {
-    const double *d = step + (size_t)BOUGH_COLUMN * i + from;
-    return bough_v3_load(d);
-}
-
 // Moves the rod by a step, shortened so that no vertex turns by more than most_turn. Returns the
 // largest change, lengths measured against the rod's.
 static double update(const bough_rod_model *m, const double *step, double *state) {
     double turn = bough_rod_turn(m, step), shift = 0;
-    for (int i = 0; i < m->n; i++) shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[m->n]);
+    for (int i = 0; i < m->n; i++)
+        shift = fmax(shift, bough_norm(bough_v3_load(step + BOUGH_COLUMN * i)) / m->span[m->n]);
     bough_rod_move(m, step, turn > most_turn ? most_turn / turn : 1, state, NULL);
     return fmax(turn, shift);
 }
@@ -181,8 +176,8 @@ static void put_in_band(const double *block, int i, int j, double *band) {
     }
 }
 
-// theory (27): K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of
-// the residual what would strain a slender rod.
+// theory (27), with the stiffness −K: in place in step. With pivoting: blocks eliminated in their order leave
+// of the residual what would strain a slender rod.
 static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
                         const double *state) {
     const bough_block_tridiagonal *a = &w->tangent.matrix;
@@ -202,10 +197,9 @@ static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const dou
 }
 
 // Newton's method under w->scaled. False when it does not converge.
-static bool converge(const bough_rod_model *m, const double *input, const bough_rod_static_options *options,
-                     bough_rod_static *w, double *state) {
+static bool converge(const bough_rod_model *m, const double *input, bough_rod_static *w, double *state) {
     int shortened = 0;
-    for (int k = 0; k < options->iterations; k++) {
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
         w->iterations++;
         // tangent and residual at rest in the moving frame
         bough_rod_move_rigidly(m, input, state);
@@ -213,14 +207,14 @@ static bool converge(const bough_rod_model *m, const double *input, const bough_
             return false;
         }
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
-        if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
+        if (residual(m, w, magnitude(m, w)) < tolerance) return true;
         if (!newton_step(m, w, input, state)) return false;
         // the step; one that is shortened again and again leads to another equilibrium
         double change = update(m, w->step, state);
         shortened += change > most_turn;
         if (shortened > SHORTENED) return false;
         // rounding in a stiff rod keeps the residual up; then a small step is convergence
-        if (change < options->tolerance) {
+        if (change < tolerance) {
             bough_rod_move_rigidly(m, input, state);
             return true;
         }
@@ -289,11 +283,9 @@ static bough_status not_found(const bough_rod_model *m, double reached) {
 }
 
 bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
-                              const bough_rod_static_options *options, bough_rod_static *work,
-                              double *state) {
+                              bough_rod_static *work, double *state) {
     size_t bytes = (size_t)BOUGH_ROD_STATES * m->n * sizeof *state;
-    double reached = 0, largest = 1.0 / options->increments, increment = largest;
-    double least = ldexp(largest, -options->halvings);
+    double reached = 0, increment = 1;
     work->iterations = 0;
     while (reached < 1) {
         // the next increment, from the last equilibrium
@@ -303,11 +295,11 @@ bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *l
         scale_input(input, target, scaled);
         memcpy(work->trial, state, bytes);
         // accepted, and doubled where it was easy; else halved
-        if (converge(m, scaled, options, work, work->trial)) {
+        if (converge(m, scaled, work, work->trial)) {
             memcpy(state, work->trial, bytes);
             reached = target;
-            if (work->iterations - before <= EASY) increment = fmin(2 * increment, largest);
-        } else if ((increment /= 2) < least) {
+            if (work->iterations - before <= EASY) increment = fmin(2 * increment, 1);
+        } else if ((increment /= 2) < ldexp(1, -HALVINGS)) {
             return not_found(m, reached);
         }
     }

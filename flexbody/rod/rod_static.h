@@ -6,18 +6,6 @@
 #include "flexbody/rod/rod.h"
 #include "flexbody/rod/rod_tangent.h"
 
-typedef struct bough_rod_static_options {
-    double tolerance; // of the residual force, relative to the largest load or stress resultant,
-                      // or of the last step [rad, lengths of the rod]
-    int increments;   // equal parts of load to begin with; halved where Newton does not converge,
-                      // doubled again where it does easily
-    int halvings;     // of a part before giving up
-    int iterations;   // of Newton's method per increment
-} bough_rod_static_options;
-
-// 1e-10, 1 increment, 12 halvings, 30 iterations.
-bough_rod_static_options bough_rod_static_options_default(void);
-
 // Work of the solution; build with the rod.
 typedef struct bough_rod_static {
     bough_rod_scratch scratch;
@@ -36,16 +24,17 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
 
 // Brings `state` (13 n), from where it is, to rest in a BRF of constant twist and gravity, `input`
 // (9, BRF axes), under loads->value (its rates are ignored) and the whole of the ramped loads. An
-// increment is a fraction of loads, gravity and the square of the twist. BOUGH_FAILED names the rod and
-// the fraction of load reached; the state is then the last equilibrium.
+// increment is a fraction of loads, gravity and the square of the twist: all at first, halved where Newton's
+// method does not converge, and doubled again where it does easily. BOUGH_FAILED names the rod and the
+// fraction of load reached; the state is then the last equilibrium.
 bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
-                              const bough_rod_static_options *options, bough_rod_static *work, double *state);
+                              bough_rod_static *work, double *state);
 
 // -- finite changes of shape, as Newton's method takes them ------------------------------------
 
 enum { BOUGH_ROD_CHANGE = 8 }; // numbers of a vertex' change: δx [m, BRF axes], δφ [rad, section axes], 0, 0
 
-// The change of vertices 1 … n_segment that a tangent to the state, `rate` (13 n), means: its δx, and
+// The change of vertices 1 … n_segment along a tangent to the state, `rate` (13 n): its δx, and
 // δφ = 2 Im(p̄∘δp). `end` and `end_rate` (7 each): x and p of the last vertex of a rod that carries
 // bodies; not read of others. change (n_segment × BOUGH_ROD_CHANGE).
 void bough_rod_change(const bough_rod_model *m, const double *state, const double *end, const double *rate,

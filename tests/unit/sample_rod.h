@@ -159,8 +159,7 @@ static inline void sample_loads_along(bough_arena *arena, const bough_rod_model 
 
 // Equilibrium of a rod whose frame is at rest.
 static inline bough_status rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
-                                           bough_vec3 gravity, const bough_rod_static_options *options,
-                                           bough_rod_static *work, double *state) {
+                                           bough_vec3 gravity, bough_rod_static *work, double *state) {
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
-    return bough_rod_steady(m, loads, input, options, work, state);
+    return bough_rod_steady(m, loads, input, work, state);
 }

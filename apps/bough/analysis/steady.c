@@ -78,7 +78,6 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, co
     bough_rod_static_init(&steady->work, arena, steady->model);
     set_input(s, turning, steady);
     bough_rod_rest_state(steady->model, steady->input, steady->state);
-    bough_rod_static_options options = bough_rod_static_options_default();
-    return bough_rod_steady(steady->model, bough_rod_body_loads(beam->rod), steady->input, &options,
-                            &steady->work, steady->state);
+    return bough_rod_steady(steady->model, bough_rod_body_loads(beam->rod), steady->input, &steady->work,
+                            steady->state);
 }

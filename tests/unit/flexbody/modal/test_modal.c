@@ -161,9 +161,8 @@ static bar make_bar(int pieces, bough_modal_options options) {
 }
 
 static void rest_rod(bar *b, const double *input) {
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_rest_state(b->rod, input, b->vertices);
-    check_ok(bough_rod_steady(b->rod, &b->loads, input, &options, &b->work, b->vertices));
+    check_ok(bough_rod_steady(b->rod, &b->loads, input, &b->work, b->vertices));
 }
 
 static void rest_modal(bar *b, const double *input) {

@@ -28,9 +28,7 @@ static blade blade_with(int segments) {
 }
 
 static void solve(blade *b, bough_vec3 gravity) {
-    bough_rod_static_options options = bough_rod_static_options_default();
-    options.tolerance = 1e-9;
-    check_ok(rod_equilibrium(b->model, &b->loads, gravity, &options, &b->work, b->state));
+    check_ok(rod_equilibrium(b->model, &b->loads, gravity, &b->work, b->state));
 }
 
 // Tip displacement [m] and rotation vector [deg].
@@ -120,10 +118,9 @@ TEST(ten_frequencies_converge_to_the_exact_beams) {
 static const bough_rod_mode *modes_at(blade *b, double rpm) {
     double omega = rpm * BOUGH_PI / 30;
     const double input[BOUGH_ROD_INPUTS] = {0, -1.5 * omega, 0, omega, 0, 0, 0, 0, 0};
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_mode_list list = {.wanted = MODES};
     bough_rod_rest_state(b->model, input, b->state);
-    bough_status s = bough_rod_steady(b->model, &b->loads, input, &options, &b->work, b->state);
+    bough_status s = bough_rod_steady(b->model, &b->loads, input, &b->work, b->state);
     if (bough_is_ok(&s)) {
         s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, &list);
     }

@@ -89,7 +89,6 @@ static void solve(const blade *b, const line_load *load, double scale, double *f
     const bough_rod_model *m = b->model;
     const double at_rest[BOUGH_ROD_INPUTS] = {0};
     const bough_schedule always = {.start = 0};
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_loads loads;
     bough_rod_static work;
     int n = m->n;
@@ -104,7 +103,7 @@ static void solve(const blade *b, const line_load *load, double scale, double *f
         bough_rod_lump(m, (bough_rod_reach){load->at[k] * length, load->at[k + 1] * length}, q, NULL, to);
     }
     bough_rod_rest_state(m, at_rest, state);
-    check_ok(rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state));
+    check_ok(rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &work, state));
     for (int i = 1; i <= n; i++) {
         const double *y = state + i - 1;
         bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};

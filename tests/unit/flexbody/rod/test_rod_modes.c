@@ -49,9 +49,8 @@ static void build_graded(bar *b, uniform u, double grading, int segments) {
 static void build(bar *b, uniform u, int segments) { build_graded(b, u, 0, segments); }
 
 static void solve(bar *b, const double *input) {
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_rest_state(b->model, input, b->state);
-    bough_status s = bough_rod_steady(b->model, &b->loads, input, &options, &b->work, b->state);
+    bough_status s = bough_rod_steady(b->model, &b->loads, input, &b->work, b->state);
     bough_rod_mode_list list = {.wanted = MODES};
     if (bough_is_ok(&s)) {
         s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, &list);

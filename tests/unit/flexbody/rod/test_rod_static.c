@@ -26,9 +26,9 @@ static bent straight_rod(bough_arena *arena, int n, double length, const double 
     return rod_at_rest(arena, sample_uniform(arena, n, length, stiffness, 0, beam_inertia));
 }
 
-static void solve(bent *b, bough_rod_static_options options) {
+static void solve(bent *b) {
     bough_vec3 none = {0, 0, 0};
-    check_ok(rod_equilibrium(b->model, &b->loads, none, &options, &b->work, b->state));
+    check_ok(rod_equilibrium(b->model, &b->loads, none, &b->work, b->state));
 }
 
 static bough_vec3 vertex(const bent *b, int i) {
@@ -46,9 +46,7 @@ TEST(end_moment_bends_rod_to_circle) {
         int n = 12 * turns;
         bent b = straight_rod(arena, n, 10, stiffness);
         b.loads.value[3 * b.model->stride + n] = turns * 2 * BOUGH_PI * 100 / 10; // about x
-        bough_rod_static_options options = bough_rod_static_options_default();
-        options.increments = 4 * turns;
-        solve(&b, options);
+        solve(&b);
         bough_vec3 tip = vertex(&b, n), quarter = vertex(&b, n / (4 * turns));
         check_near(tip.x, 0, 0, 1e-9);
         check_near(tip.y, 0, 0, 1e-8);
@@ -70,9 +68,7 @@ TEST(dead_tip_force_gives_the_elastica) {
         int n = 20 << k;
         bent b = straight_rod(arena, n, 1, stiffness);
         b.loads.value[n] = 2;
-        bough_rod_static_options options = bough_rod_static_options_default();
-        options.increments = 4;
-        solve(&b, options);
+        solve(&b);
         bough_vec3 tip = vertex(&b, n);
         check_near(1 - tip.z, 0.160641721, 0, 2e-3);
         error[k] = tip.x - 0.493457480;
@@ -100,7 +96,7 @@ TEST(load_that_falls_along_the_rod_bends_it_as_beam_theory_says) {
         }
         bough_rod_lump(b.model, (bough_rod_reach){0, to}, start, end,
                        bough_rod_loads_ramped(&b.loads, arena, b.model, false, &always));
-        solve(&b, bough_rod_static_options_default());
+        solve(&b);
         double bending = q * pow(to, 4) / 30 / 3, turn = q * pow(to, 3) / 24 / 3;
         double shear = q * to * to / 6 / 1e4;
         check_near(vertex(&b, 5).x, bending + turn * (length - to) + shear, 5e-4, 0);
@@ -150,7 +146,7 @@ static double polynomial_error(int n) {
         const double start[6] = {mean - slope * h / 2}, end[6] = {mean + slope * h / 2};
         bough_rod_lump(b.model, (bough_rod_reach){k * h, (k + 1) * h}, start, end, load);
     }
-    solve(&b, bough_rod_static_options_default());
+    solve(&b);
     double worst = 0, tip = scale * pow(length, 4) / 36 * (3. / 8 - 1. / 9) / 6;
     for (int i = 1; i <= n; i++) {
         double x = 1. * i / n, bending = pow(x, 9) / 3024 - x * x * x / 36 + x * x / 14;
@@ -179,7 +175,7 @@ TEST(tension_stiffens_the_deflection_within_a_segment) {
         bent b = strip_of(arena, n, 0);
         b.loads.value[b.model->stride + n] = across;
         b.loads.value[2 * b.model->stride + n] = tension;
-        solve(&b, bough_rod_static_options_default());
+        solve(&b);
         error[i] = fabs(vertex(&b, n).y / exact - 1);
     }
     print_message("8, 16, 32 segments: %.2g, %.2g, %.2g\n", error[0], error[1], error[2]);
@@ -203,7 +199,7 @@ static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_v
     bough_rod_lump(b.model, (bough_rod_reach){0, length}, line, NULL, load);
     const double at_tip[3] = {force.x, force.y, force.z};
     for (int c = 0; c < 3; c++) b.loads.value[c * b.model->stride + n] = at_tip[c];
-    solve(&b, bough_rod_static_options_default());
+    solve(&b);
     bough_vec3 tip = bough_scale(1 / length, vertex(&b, n));
     return tip;
 }
@@ -238,7 +234,7 @@ static double askew_twist(int n, double pretwist) {
     double before = b.state[(BOUGH_ROD_P + 3) * n + n - 1];
     b.loads.value[n] = 0.02;
     b.loads.value[b.model->stride + n] = 0.01;
-    solve(&b, bough_rod_static_options_default());
+    solve(&b);
     double twist = 2 * (b.state[(BOUGH_ROD_P + 3) * n + n - 1] - before);
     return twist;
 }
@@ -258,7 +254,7 @@ static void follower_tip(double force, int mesh, double tip[2]) {
     int n = 100 << mesh;
     bent b = straight_rod(arena, n, 100, stiffness);
     bough_rod_loads_ramped(&b.loads, arena, b.model, true, &constant)->value[n] = force;
-    solve(&b, bough_rod_static_options_default());
+    solve(&b);
     tip[0] = vertex(&b, n).z - 100;
     tip[1] = vertex(&b, n).x;
 }
@@ -288,8 +284,7 @@ TEST(turning_bar_stretches) {
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 20, 0, 0, 0, 0, 0};
     check_arena(arena);
     bent b = straight_rod(arena, 100, 10, stiffness);
-    bough_rod_static_options options = bough_rod_static_options_default();
-    check_ok(bough_rod_steady(b.model, &b.loads, input, &options, &b.work, b.state));
+    check_ok(bough_rod_steady(b.model, &b.loads, input, &b.work, b.state));
     check_near(vertex(&b, 100).z - 10, 400 * 1000 / (3 * 1e9), 5e-4, 0);
     for (int i = 0; i < 100; i++) { // velocities ride along: ω×x
         check_near(b.state[(BOUGH_ROD_U + 1) * 100 + i], -20 * b.state[200 + i], 1e-12, 0);
@@ -307,9 +302,8 @@ TEST(slender_rod_takes_few_iterations) {
         const double stiffness[6] = {shear, shear, ea, 1, 1, 1};
         check_arena(arena);
         bent b = straight_rod(arena, 200, 1, stiffness);
-        bough_rod_static_options options = bough_rod_static_options_default();
         bough_vec3 weight = {100, 0, 0}; // of 1 kg/m
-        check_ok(rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state));
+        check_ok(rod_equilibrium(b.model, &b.loads, weight, &b.work, b.state));
         assert_in_range(b.work.iterations, 2, 15);
         check_near(vertex(&b, 200).x, 0.9375239354, 0, 2e-4);
         check_near(vertex(&b, 200).z, 0.1592233826, 0, 2e-4);
@@ -322,9 +316,8 @@ static bough_status bend_slender(double slenderness, int n) {
     check_arena(arena);
     bent b = straight_rod(arena, n, 1, stiffness);
     b.loads.value[n] = 10;
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_vec3 none = {0, 0, 0};
-    bough_status s = rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
+    bough_status s = rod_equilibrium(b.model, &b.loads, none, &b.work, b.state);
     // chords that do not shear bend by less than the elastica
     if (bough_is_ok(&s)) check_near(vertex(&b, n).x, 0.81061, 0, 0.5 / n / n);
     return s;
@@ -355,7 +348,6 @@ TEST(hopeless_load_is_diagnosed) {
     check_arena(arena);
     bent b = straight_rod(arena, 4, 1, stiffness);
     b.loads.value[3 * b.model->stride + 4] = 1e3; // 120° per segment is exceeded
-    bough_rod_static_options options = bough_rod_static_options_default();
     bough_vec3 none = {0, 0, 0};
-    check_fails(rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state), BOUGH_FAILED, "sample");
+    check_fails(rod_equilibrium(b.model, &b.loads, none, &b.work, b.state), BOUGH_FAILED, "sample");
 }
