@@ -10,11 +10,11 @@ enum { RIGID = 6 };
 static const double dependent =
     1e-6; // norm outside the span of earlier shapes, relative to the whole: below it, dependent
 
-// Vectors have 6 entries per moving vertex, displacement in frame axes and rotation in section axes.
+// Vectors have 8 entries for each moving vertex: displacement in frame axes, rotation in section axes, 0, 0.
 typedef struct basis {
     bough_arena *arena;
     const bough_rod_model *rod;
-    int size;                          // 6 n
+    int size;                          // 8 n
     bough_rod_tangent tangent;         // at rest
     bough_block_tridiagonal stiffness; // K; factored by solve()
     bool factored;
@@ -39,28 +39,14 @@ static bool linearise(basis *b) {
     return true;
 }
 
-// y += A x for the blocks of a row
-static void add_block(const double *block, const double *x, double *y) {
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) y[i] += block[BOUGH_COLUMN * j + i] * x[j];
-    }
-}
-
-static void tridiagonal_times(const bough_block_tridiagonal *a, const double *x, double *y) {
-    memset(y, 0, 6 * (size_t)a->n * sizeof *y);
-    for (int i = 0; i < a->n; i++) {
-        size_t at = (size_t)i * BOUGH_BLOCK;
-        if (i > 0) add_block(a->lower + at, x + 6 * (i - 1), y + 6 * i);
-        add_block(a->diagonal + at, x + 6 * i, y + 6 * i);
-        if (i < a->n - 1) add_block(a->upper + at, x + 6 * (i + 1), y + 6 * i);
-    }
-}
-
+// y = M x
 static void mass_times(const basis *b, const double *x, double *y) {
     memset(y, 0, (size_t)b->size * sizeof *y);
     for (int i = 0; i < b->rod->n; i++) {
-        add_block(b->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, x + 6 * i, y + 6 * i);
+        bough_block_subtract(b->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, x + BOUGH_COLUMN * i,
+                             y + BOUGH_COLUMN * i);
     }
+    for (int i = 0; i < b->size; i++) y[i] = -y[i];
 }
 
 // Adds x, made orthonormal in the mass to the vectors before it by Gram and Schmidt, unless it depends on
@@ -105,7 +91,7 @@ static void backward(const double *l, double *x) {
     }
 }
 
-// L_i⁻¹ K_ij L_j⁻ᵀ into the dense matrix (size × size, by columns).
+// L_i⁻¹ K_ij L_j⁻ᵀ into the dense matrix (6 n × 6 n, by columns).
 static void put_whitened(const basis *b, const double *factor, const double *block, int i, int j,
                          double *dense) {
     double column[6][6];
@@ -117,7 +103,7 @@ static void put_whitened(const basis *b, const double *factor, const double *blo
         double row[6];
         for (int c = 0; c < 6; c++) row[c] = column[c][r];
         forward(factor + 36 * j, row);
-        for (int c = 0; c < 6; c++) dense[(size_t)(6 * j + c) * b->size + 6 * i + r] = row[c];
+        for (int c = 0; c < 6; c++) dense[(size_t)(6 * j + c) * 6 * b->rod->n + 6 * i + r] = row[c];
     }
 }
 
@@ -135,14 +121,15 @@ static bool factor_mass(const basis *b, double *factor) {
 
 // Clamped modes: M = L Lᵀ per vertex turns K φ = ω² M φ into the standard problem of L⁻¹ K L⁻ᵀ, solved by
 // LAPACK.
-static bool add_modes(basis *b, int wanted) {
-    size_t n = (size_t)b->size;
-    int count = wanted < b->size ? wanted : b->size;
+static bool add_modes(basis *b, int count) {
+    int size = 6 * b->rod->n;
+    size_t n = (size_t)size;
     double *dense = bough_arena_doubles(b->arena, n * n);
     double *vector = bough_arena_doubles(b->arena, n * (size_t)count);
     double *value = bough_arena_doubles(b->arena, n), *work = bough_arena_doubles(b->arena, 26 * n);
     int *index = bough_arena_take(b->arena, 12 * n * sizeof *index);
     double *factor = bough_arena_doubles(b->arena, 36 * (size_t)b->rod->n);
+    double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     // whitened stiffness, its lower triangle
     if (!factor_mass(b, factor)) return false;
     for (int i = 0; i < b->rod->n; i++) {
@@ -152,10 +139,13 @@ static bool add_modes(basis *b, int wanted) {
         if (i > 0) put_whitened(b, factor, lower, i, i - 1, dense);
     }
     // lowest eigenvectors x, shapes L⁻ᵀ x
-    if (!bough_symmetric_smallest(b->size, dense, count, value, vector, work, index)) return false;
+    if (!bough_symmetric_smallest(size, dense, count, value, vector, work, index)) return false;
     for (int k = 0; k < count; k++) {
-        double *x = vector + n * (size_t)k;
-        for (int i = 0; i < b->rod->n; i++) backward(factor + 36 * i, x + 6 * i);
+        for (int i = 0; i < b->rod->n; i++) {
+            double *own = x + BOUGH_COLUMN * i;
+            memcpy(own, vector + n * (size_t)k + 6 * i, 6 * sizeof *own);
+            backward(factor + 36 * i, own);
+        }
         add_vector(b, x);
     }
     return true;
@@ -171,20 +161,15 @@ static void rigid_motion(const bough_rod_model *rod, int k, double *x) {
             v.linear = bough_cross(e, rod->position0[i + 1]);
             v.angular = bough_mat3_tmul(bough_rotation_matrix(rod->rotation0[i + 1]), e);
         }
-        bough_twist_store(v, x + 6 * i);
+        bough_twist_store(v, x + BOUGH_COLUMN * i);
     }
 }
 
 // K⁻¹ x
-static bool solve(basis *b, double *work, double *x) {
+static bool solve(basis *b, double *x) {
     if (!b->factored && !bough_block_tridiagonal_factor(&b->stiffness)) return false;
     b->factored = true;
-    for (int i = 0; i < b->rod->n; i++) {
-        memset(work + BOUGH_COLUMN * i, 0, BOUGH_COLUMN * sizeof *work);
-        memcpy(work + BOUGH_COLUMN * i, x + 6 * i, 6 * sizeof *work);
-    }
-    bough_block_tridiagonal_solve(&b->stiffness, work);
-    for (int i = 0; i < b->rod->n; i++) memcpy(x + 6 * i, work + BOUGH_COLUMN * i, 6 * sizeof *work);
+    bough_block_tridiagonal_solve(&b->stiffness, x);
     return true;
 }
 
@@ -192,7 +177,6 @@ static bool solve(basis *b, double *work, double *x) {
 static bool add_others(basis *b, bool statics, bool inner) {
     double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     double *y = bough_arena_doubles(b->arena, (size_t)b->size);
-    double *work = bough_arena_doubles(b->arena, (size_t)BOUGH_COLUMN * b->rod->n);
     for (int k = 0; k < RIGID; k++) {
         rigid_motion(b->rod, k, x);
         add_vector(b, x);
@@ -201,14 +185,14 @@ static bool add_others(basis *b, bool statics, bool inner) {
     for (int k = 0; k < RIGID && statics; k++) {
         rigid_motion(b->rod, k, x);
         mass_times(b, x, y);
-        if (!solve(b, work, y)) return false;
+        if (!solve(b, y)) return false;
         add_vector(b, y);
     }
     // under a wrench of the next piece at the last vertex
     for (int k = 0; k < RIGID && inner; k++) {
         memset(y, 0, (size_t)b->size * sizeof *y);
-        y[b->size - RIGID + k] = 1;
-        if (!solve(b, work, y)) return false;
+        y[b->size - BOUGH_COLUMN + k] = 1;
+        if (!solve(b, y)) return false;
         add_vector(b, y);
     }
     return true;
@@ -219,9 +203,10 @@ static bool add_others(basis *b, bool statics, bool inner) {
 // −Xᵀ A X (count × count) of a tridiagonal A.
 static void project(const basis *b, const bough_block_tridiagonal *a, double *work, double *to) {
     for (int l = 0; l < b->count; l++) {
-        tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
+        memset(work, 0, (size_t)b->size * sizeof *work);
+        bough_block_tridiagonal_subtract(a, b->vector + (size_t)l * b->size, work);
         for (int k = 0; k < b->count; k++) {
-            to[l * b->count + k] = -bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
+            to[l * b->count + k] = bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
         }
     }
 }
@@ -246,7 +231,7 @@ static void store(const basis *b, const double *value, const double *damping, bo
         piece->square[k] = value[k];
         for (int l = 0; l < m; l++) piece->damping[k * stride + l] = damping[k * m + l];
         for (int i = 0; i < piece->n; i++) {
-            const double *x = b->vector + (size_t)k * b->size + 6 * i;
+            const double *x = b->vector + (size_t)k * b->size + BOUGH_COLUMN * i;
             bough_mat3 r = bough_rotation_matrix(b->rod->rotation0[i + 1]);
             bough_twist v = bough_twist_load(x);
             v.angular = bough_mat3_mul(r, v.angular);
@@ -294,8 +279,8 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
 }
 
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece) {
-    basis b = {.arena = bough_arena_child(arena), .rod = piece->rod, .size = 6 * piece->n};
-    if (options.modes > b.size) options.modes = b.size;
+    basis b = {.arena = bough_arena_child(arena), .rod = piece->rod, .size = BOUGH_COLUMN * piece->n};
+    if (options.modes > 6 * piece->n) options.modes = 6 * piece->n;
     bough_status status = bough_fail(BOUGH_FAILED, "%s: its modes cannot be found", piece->rod->name);
     if (find_shapes(&b, options, piece->inner)) {
         double *value = bough_arena_doubles(b.arena, (size_t)b.count);

@@ -111,7 +111,9 @@ static void set_rotating(const fields *f, int a) {
     }
 }
 
+// The axes a, b of ω_a ω_b, which stands for both orders of different axes.
 static const int square_of[BOUGH_MODAL_SQUARES][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+static int orders(int j) { return j < 3 ? 1 : 2; }
 
 static double *field_matrix(const fields *f, int j) {
     return f->piece->field + (size_t)j * f->piece->m * f->piece->stride;
@@ -119,9 +121,8 @@ static double *field_matrix(const fields *f, int j) {
 
 // N_ab without stiffening: centrifugal forces by the part of the rotating shapes outside the span.
 static void set_softening(const fields *f, int j) {
-    for (int order = 0; order < 2; order++) {
+    for (int order = 0; order < orders(j); order++) {
         int a = square_of[j][order], b = square_of[j][1 - order];
-        if (order == 1 && a == b) continue;
         map_field(f, gyroscopic, bough_unit3(b), f->rest[a], f->product);
         add_projection(f, f->product, -1, field_matrix(f, j));
     }
@@ -132,9 +133,8 @@ static void set_centrifugal(const fields *f, int j) {
     const bough_modal_piece *p = f->piece;
     for (int i = 0; i < p->n; i++) {
         bough_vec3 spin = {0, 0, 0};
-        for (int order = 0; order < 2; order++) {
+        for (int order = 0; order < orders(j); order++) {
             int a = square_of[j][order], b = square_of[j][1 - order];
-            if (order == 1 && a == b) continue;
             bough_vec3 h = bough_mat3_mul(f->vertex[i].inertia, bough_unit3(b));
             spin = bough_add(spin, bough_cross(bough_unit3(a), h));
         }
@@ -152,9 +152,8 @@ static bough_vec3 field_force(const fields *f, int j, int i) {
     if (j >= 9) return i == f->piece->n - 1 ? bough_unit3(j - 9) : bough_v3(0, 0, 0);
     if (j >= BOUGH_MODAL_SQUARES) return bough_scale(-v->mass, bough_unit3(j - BOUGH_MODAL_SQUARES));
     bough_vec3 sum = {0, 0, 0};
-    for (int order = 0; order < 2; order++) {
+    for (int order = 0; order < orders(j); order++) {
         int a = square_of[j][order], b = square_of[j][1 - order];
-        if (order == 1 && a == b) continue;
         sum = bough_add(sum, bough_cross(bough_unit3(a), bough_cross(bough_unit3(b), v->position)));
     }
     return bough_scale(-v->mass, sum);

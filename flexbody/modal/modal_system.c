@@ -170,8 +170,6 @@ typedef struct newton {
     int *pivot;     // (n_state)
 } newton;
 
-const double *bough_modal_jacobian(const void *factors) { return ((const newton *)factors)->jacobian; }
-
 static void *factors(void *self, bough_arena *arena) {
     size_t n = (size_t)((const bough_modal_body *)self)->model->n_state;
     newton *k = bough_arena_take(arena, sizeof *k);

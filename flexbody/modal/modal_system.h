@@ -129,6 +129,3 @@ void bough_modal_body_move_rigidly(bough_modal_body *body, const double *input, 
 // (13 n), absolute velocities for the frame's twist in `input`; valid until the next call.
 const double *bough_modal_body_vertices(bough_modal_body *body, const double *state, const double *input,
                                         int first);
-
-// ∂f/∂y (n_state × n_state, by columns) of the last linearisation into these factors of the body's system.
-const double *bough_modal_jacobian(const void *factors);

@@ -57,17 +57,23 @@ bough_status bough_modal_frequencies(bough_arena *arena, bough_modal_body *body,
     bough_system s = bough_modal_body_system(body);
     size_t n = (size_t)s.n_state;
     void *factors = s.ops->factors(body, arena);
-    double *jacobian = bough_arena_doubles(arena, n * n), *value = bough_arena_doubles(arena, 2 * n);
+    double *inverse = bough_arena_doubles(arena, n * n), *value = bough_arena_doubles(arena, 2 * n);
     double *vector = bough_arena_doubles(arena, n * n),
            *work = bough_arena_doubles(arena, BOUGH_EIGEN_WORK(n));
-    bool ok = s.ops->linearise(body, t, state, input, factors);
-    memcpy(jacobian, bough_modal_jacobian(factors), n * n * sizeof *jacobian);
-    if (!ok || !bough_dense_eigen(s.n_state, jacobian, value, vector, work)) {
+    // eigenvalues μ of (I − γ ∂f/∂y)⁻¹, and λ = (1 − 1/μ)/γ of ∂f/∂y
+    const double gamma = 0.1;
+    bool ok = s.ops->linearise(body, t, state, input, factors) && s.ops->factor(body, factors, gamma);
+    for (size_t k = 0; k < n; k++) {
+        inverse[k * n + k] = 1;
+        s.ops->solve(body, factors, inverse + k * n);
+    }
+    if (!ok || !bough_dense_eigen(s.n_state, inverse, value, vector, work)) {
         return bough_fail(BOUGH_FAILED, "%s: its eigenvalues cannot be found", s.name);
     }
     size_t count = 0;
     for (size_t k = 0; k < n; k++) {
-        if (value[n + k] > 0) work[count++] = hypot(value[k], value[n + k]) / (2 * BOUGH_PI);
+        double x = value[k], y = value[n + k], square = x * x + y * y;
+        if (y > 0) work[count++] = hypot(1 - x / square, y / square) / gamma / (2 * BOUGH_PI);
     }
     qsort(work, count, sizeof *work, ascending);
     *found = (int)count < wanted ? (int)count : wanted;
