@@ -66,11 +66,11 @@ static bough_statistics work_of(const bough_integrator *integrator) {
 // Advances by method k from the last good step on, and finds its cost.
 static bough_status take(automatic *m, int k, double *t, double t1, bool restart, double *y) {
     const bough_integrator *x = &m->method[k];
-    bough_statistics work = work_of(x);
+    bough_statistics before = work_of(x);
     double begun = *t;
-    bough_statistics_add(&work, -2, &work); // the negative
     bough_status status = x->ops->advance(x->self, t, t1, restart, y);
-    x->ops->statistics(x->self, &work);
+    bough_statistics work = work_of(x);
+    bough_statistics_add(&work, -1, &before);
     // tangents and factors take as long as two evaluations each
     double cost = (double)(work.derivatives + 2 * (work.jacobians + work.factorisations)) / (t1 - begun);
     m->cost = k != ROSENBROCK || work.steps > MANY_STEPS ? cost : 0;

@@ -32,10 +32,10 @@ static const double safety = 0.9, most_shrinking = 5, most_growing = 8;
 // A step that would grow by less keeps its size and with it the factors.
 static const double worthwhile = 1.2;
 
-// What a copy holds; the arrays follow it in `memory`.
+// What the next step depends on, beside the stages of the last one and the Jacobian.
 typedef struct history {
     double time, step;             // step: the next to try; 0: to be guessed
-    double start, length;          // of the last step; 0: no stages to start from
+    double length;                 // of the last step; 0: no stages to start from
     double factored;               // the step size the matrices are factored for; 0: none
     double accepted, error;        // of the last accepted step; 0: none yet
     double convergence, remainder; // of Newton's iteration: θ, θ/(1 − θ)
@@ -49,14 +49,13 @@ typedef struct radau {
     bough_ode ode;
     double *weight;          // 1/tolerance (n)
     double newton_tolerance; // in units of the tolerance
-    size_t bytes;            // of memory
-    history *past;           // begins memory
-    double *y, *z, *matrix;  // in memory: (n) state, (3 × n) stages, (n × n) Jacobian
-    double *rate;            // (n) f at the step's start
-    double *trial, *w, *f;   // (3 × n) each
-    double *error, *point;   // (n)
-    double *real, *complex;  // factors (n × n), (n × n × 2)
-    double *pair;            // (n × 2)
+    history past;
+    double *z, *matrix;     // (3 × n) stages of the last step, (n × n) Jacobian
+    double *y, *rate;       // (n) state and f at the step's start
+    double *trial, *w, *f;  // (3 × n) each
+    double *error, *point;  // (n)
+    double *real, *complex; // factors (n × n), (n × n × 2)
+    double *pair;           // (n × 2)
     int *real_pivot, *complex_pivot;
     double present; // the step size whose factors are really there
     bool coarse;    // its steps shall not be those of the run beside it
@@ -67,21 +66,13 @@ typedef struct radau {
 
 static void take(bough_arena *arena, radau *r) {
     size_t n = (size_t)r->ode.n;
-    size_t head = (sizeof(history) + sizeof(double) - 1) / sizeof(double);
-    size_t count = head + 4 * n + n * n;
-    double *memory = bough_arena_doubles(arena, count);
-    bough_arena_each(arena, n, &r->weight, &r->rate, &r->error, &r->point);
-    bough_arena_each(arena, STAGES * n, &r->trial, &r->w, &r->f);
-    r->real = bough_arena_doubles(arena, n * n);
+    bough_arena_each(arena, n, &r->weight, &r->y, &r->rate, &r->error, &r->point);
+    bough_arena_each(arena, STAGES * n, &r->z, &r->trial, &r->w, &r->f);
+    bough_arena_each(arena, n * n, &r->matrix, &r->real);
     r->complex = bough_arena_doubles(arena, 2 * n * n);
     r->pair = bough_arena_doubles(arena, 2 * n);
     r->real_pivot = bough_arena_take(arena, n * sizeof(int));
     r->complex_pivot = bough_arena_take(arena, n * sizeof(int));
-    r->bytes = count * sizeof(double);
-    r->past = (history *)(void *)memory;
-    r->y = memory + head;
-    r->z = r->y + n;
-    r->matrix = r->z + STAGES * n;
 }
 
 static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
@@ -178,7 +169,7 @@ static bool differentiate(radau *r, double t) {
 
 // The Jacobian and factors for a step of h. Both may be older: they only steer the iteration.
 static bool prepare(radau *r, double h) {
-    history *past = r->past;
+    history *past = &r->past;
     if (!past->jacobian) {
         r->count.jacobians++;
         if (!differentiate(r, past->time)) return false;
@@ -192,7 +183,7 @@ static bool prepare(radau *r, double h) {
 // The last step's polynomial, carried on, starts the iteration; without one the stages start at 0.
 static void guess_stages(radau *r, double h) {
     int n = r->ode.n;
-    const history *past = r->past;
+    const history *past = &r->past;
     memset(r->trial, 0, STAGES * (size_t)n * sizeof(double));
     for (int s = 0; s < STAGES && past->length > 0; s++) {
         double value[STAGES];
@@ -238,7 +229,7 @@ static double improve(radau *r, double h, double *increment) {
 // Newton's iteration on the stages, into r->trial. Where it does not converge, *shrink is by what
 // factor to shorten the step.
 static bool solve_stages(radau *r, double h, double *shrink) {
-    history *past = r->past;
+    history *past = &r->past;
     double last = 0, ratio = 0;
     *shrink = 0.5;
     past->remainder = pow(fmax(past->remainder, 2.3e-16), 0.8);
@@ -285,9 +276,9 @@ static double estimate_error(radau *r, double h) {
     }
     bough_dense_solve(n, 1, r->real, r->real_pivot, r->error);
     double size = norm(r, r->error);
-    if (!(size >= 1) || (r->past->accepted > 0 && !r->past->rejected)) return size;
+    if (!(size >= 1) || (r->past.accepted > 0 && !r->past.rejected)) return size;
     for (int i = 0; i < n; i++) r->point[i] = r->y[i] + r->error[i];
-    if (!evaluate(r, r->past->time, r->point, filtered)) return size;
+    if (!evaluate(r, r->past.time, r->point, filtered)) return size;
     for (int i = 0; i < n; i++) filtered[i] += sum[i];
     bough_dense_solve(n, 1, r->real, r->real_pivot, filtered);
     return norm(r, filtered);
@@ -298,7 +289,7 @@ static double estimate_error(radau *r, double h) {
 // The shorter step of two controllers: the elementary one, and the one that predicts
 // the error from how it changed over the last two steps.
 static double next_step(radau *r, double h, double error, double effort) {
-    history *past = r->past;
+    history *past = &r->past;
     double quotient = pow(error, 0.25) / (safety * effort);
     quotient = bough_clamp(quotient, 1 / most_growing, most_shrinking);
     if (error < 1 && past->accepted > 0) {
@@ -309,11 +300,10 @@ static double next_step(radau *r, double h, double error, double effort) {
 }
 
 static void accept(radau *r, double t1, double h, double error, double next) {
-    history *past = r->past;
+    history *past = &r->past;
     int n = r->ode.n;
     memcpy(r->z, r->trial, STAGES * (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) r->y[i] += r->z[2 * n + i];
-    past->start = past->time;
     past->length = h;
     past->time = t1;
     past->accepted = h;
@@ -329,7 +319,7 @@ static void accept(radau *r, double t1, double h, double error, double next) {
 
 // From time to `end`, a step of h; on failure a shorter one is proposed.
 static void attempt(radau *r, double end, double h) {
-    history *past = r->past;
+    history *past = &r->past;
     double effort = 0.5, error = NAN;
     bool solved = evaluate(r, past->time, r->y, r->rate) && prepare(r, h) && solve_stages(r, h, &effort);
     if (solved) error = fmax(estimate_error(r, h), 1e-10);
@@ -346,7 +336,7 @@ static void attempt(radau *r, double end, double h) {
 
 // A first step after the size of y, f and the change of f along an Euler step
 static double first_step(radau *r, double span) {
-    const history *past = r->past;
+    const history *past = &r->past;
     int n = r->ode.n;
     if (!evaluate(r, past->time, r->y, r->rate)) return 1e-6 * span;
     double size = norm(r, r->y), slope = norm(r, r->rate);
@@ -362,19 +352,19 @@ static double first_step(radau *r, double span) {
 
 // The step size is kept where f jumps.
 static void start(radau *r, double t) {
-    double step = r->past->started ? r->past->step : 0;
-    *r->past = (history){.time = t, .step = step, .remainder = 1, .started = true};
+    double step = r->past.started ? r->past.step : 0;
+    r->past = (history){.time = t, .step = step, .remainder = 1, .started = true};
     r->present = 0;
     r->count.starts++;
 }
 
 static bough_status failure(const radau *r, const char *what) {
-    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: Radau IIA %s", r->ode.name, r->past->time, what);
+    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: Radau IIA %s", r->ode.name, r->past.time, what);
 }
 
 // Integrates to exactly t1, never evaluating f beyond it.
 static bough_status cross(radau *r, double t1) {
-    history *past = r->past;
+    history *past = &r->past;
     double shortest = 1e-14 * fmax(fabs(t1), t1 - past->time);
     for (int k = 0; past->time < t1; k++) {
         double left = t1 - past->time, h = past->step;
@@ -391,7 +381,7 @@ static bough_status cross(radau *r, double t1) {
 
 static bough_status advance(void *self, double *t, double t1, bool restart, double *y) {
     radau *r = self;
-    history *past = r->past;
+    history *past = &r->past;
     if (restart || !past->started) start(r, *t);
     memcpy(r->y, y, (size_t)r->ode.n * sizeof(double));
     bough_status status = cross(r, t1);
@@ -404,7 +394,9 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
 // Without the factors, which follow from Jacobian and step size.
 static void transfer(void *self, bough_snapshot *s) {
     radau *r = self;
-    bough_snapshot_take(s, r->past, r->bytes);
+    BOUGH_SNAPSHOT(s, r->past);
+    bough_snapshot_doubles(s, r->z, STAGES * r->ode.n);
+    bough_snapshot_doubles(s, r->matrix, r->ode.n * r->ode.n);
     if (s->move == BOUGH_SNAPSHOT_RESTORE) r->present = 0;
 }
 
