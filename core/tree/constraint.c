@@ -39,46 +39,36 @@ bough_constraint bough_constraint_make(bough_joint_kind kind, bough_vec3 axis, b
     return c;
 }
 
-// Relative motion, common to all rows, in axes of the first frame
-typedef struct relative {
-    bough_mat3 e;           // E
-    bough_vec3 d, d_rate;   // [m], [m/s]
-    bough_vec3 d_bias;      // d̈ without v̇ and Ω̇ [m/s²]
-    bough_vec3 omega, spin; // ω, E Ω_b [rad/s]
-    bough_vec3 first_omega; // Ω_a [rad/s]
-} relative;
-
-static relative relate(const bough_frame_motion *a, const bough_frame_motion *b) {
-    relative r;
+bough_relative_motion bough_relate(const bough_frame_motion *a, const bough_frame_motion *b) {
+    bough_relative_motion r;
     bough_mat3 to_a = bough_mat3_transpose(a->pose.rotation);
     r.e = bough_mat3_product(to_a, b->pose.rotation);
     r.d = bough_mat3_mul(to_a, bough_sub(b->pose.position, a->pose.position));
-    r.first_omega = a->twist.angular;
-    r.spin = bough_mat3_mul(r.e, b->twist.angular);
-    r.omega = bough_sub(r.spin, r.first_omega);
-    bough_vec3 carried = bough_mat3_mul(r.e, b->twist.linear); // E v_b
-    r.d_rate = bough_sub(bough_sub(carried, a->twist.linear), bough_cross(r.first_omega, r.d));
-    r.d_bias = bough_sub(bough_cross(r.omega, carried), bough_cross(r.first_omega, r.d_rate));
+    r.w_first = a->twist.angular;
+    r.v_second = bough_mat3_mul(r.e, b->twist.linear);
+    r.w_second = bough_mat3_mul(r.e, b->twist.angular);
+    r.omega = bough_sub(r.w_second, r.w_first);
+    r.d_rate = bough_sub(bough_sub(r.v_second, a->twist.linear), bough_cross(r.w_first, r.d));
     return r;
 }
 
 // (e·d)˙ = e·ḋ
-static bough_constraint_row translation(const relative *r, bough_vec3 along) {
+static bough_constraint_row translation(const bough_relative_motion *r, bough_vec3 bias, bough_vec3 along) {
     static const bough_vec3 none;
     return (bough_constraint_row){
         .value = bough_dot(along, r->d),
         .rate = bough_dot(along, r->d_rate),
-        .bias = bough_dot(along, r->d_bias),
+        .bias = bough_dot(along, bias),
         .wrench = {{bough_scale(-1, along), bough_cross(along, r->d)}, {bough_mat3_tmul(r->e, along), none}},
     };
 }
 
 // (a·E b)˙ = c·ω with c = E b × a
-static bough_constraint_row rotation(const relative *r, bough_vec3 a, bough_vec3 b) {
+static bough_constraint_row rotation(const bough_relative_motion *r, bough_vec3 a, bough_vec3 b) {
     static const bough_vec3 none;
     bough_vec3 seen = bough_mat3_mul(r->e, b), c = bough_cross(seen, a);
     bough_vec3 c_rate = bough_cross(bough_cross(r->omega, seen), a);
-    bough_vec3 turned = bough_cross(r->omega, r->spin); // Ė Ω_b
+    bough_vec3 turned = bough_cross(r->omega, r->w_second); // Ė Ω_b
     return (bough_constraint_row){
         .value = bough_dot(a, seen),
         .rate = bough_dot(c, r->omega),
@@ -89,8 +79,10 @@ static bough_constraint_row rotation(const relative *r, bough_vec3 a, bough_vec3
 
 void bough_constraint_rows(const bough_constraint *c, const bough_frame_motion *a,
                            const bough_frame_motion *b, bough_constraint_row *row) {
-    relative r = relate(a, b);
-    for (int i = 0; i < c->n_translation; i++) row[i] = translation(&r, c->along[i]);
+    bough_relative_motion r = bough_relate(a, b);
+    // d̈ without v̇ and Ω̇
+    bough_vec3 bias = bough_sub(bough_cross(r.omega, r.v_second), bough_cross(r.w_first, r.d_rate));
+    for (int i = 0; i < c->n_translation; i++) row[i] = translation(&r, bias, c->along[i]);
     for (int i = 0; i < c->n_rotation; i++)
         row[c->n_translation + i] = rotation(&r, c->first[i], c->second[i]);
 }

@@ -19,6 +19,17 @@ typedef struct bough_frame_motion {
     bough_twist twist;    // in its own axes [m/s, rad/s]
 } bough_frame_motion;
 
+// Motion of a frame b relative to a frame a, all in the axes of a.
+typedef struct bough_relative_motion {
+    bough_mat3 e;                  // E
+    bough_vec3 d, d_rate;          // [m], [m/s]
+    bough_vec3 omega;              // E Ω_b − Ω_a [rad/s]
+    bough_vec3 w_first;            // Ω_a [rad/s]
+    bough_vec3 v_second, w_second; // E v_b, E Ω_b [m/s, rad/s]
+} bough_relative_motion;
+
+bough_relative_motion bough_relate(const bough_frame_motion *a, const bough_frame_motion *b);
+
 typedef struct bough_constraint_row {
     double value;           // left side of the equation [m, –]
     double rate;            // its rate [m/s, 1/s]

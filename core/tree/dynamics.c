@@ -89,10 +89,8 @@ bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data
 // theory (40) without accelerations: wrench_i = V ×* I V − I g − f_ext
 static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t, const double *input) {
     for (int i = 0; i < tree->n_links; i++) {
-        const bough_inertia *inertia = &tree->links[i].inertia;
-        bough_wrench momentum = bough_inertia_mul(inertia, d->twist[i]);
-        bough_wrench weight = bough_inertia_mul(inertia, (bough_twist){d->gravity[i], {0, 0, 0}});
-        d->wrench[i] = bough_wrench_sub(bough_wrench_cross(d->twist[i], momentum), weight);
+        bough_twist lift = {bough_scale(-1, d->gravity[i]), {0, 0, 0}};
+        d->wrench[i] = bough_inertia_wrench(&tree->links[i].inertia, lift, d->twist[i]);
     }
     // external wrenches: ports, ends, samples, springs and bushings, applied loads, closures
     for (int p = 0; input != NULL && p < tree->n_ports; p++) {
@@ -118,7 +116,8 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     memcpy(d->force, d->passive, (size_t)tree->n_v * sizeof(double));
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
-        d->force[tree->links[load->body].first_speed] += load->value * bough_schedule_at(&load->schedule, t);
+        const bough_link *link = &tree->links[tree->bodies[load->body].link];
+        d->force[link->first_speed] += load->value * bough_schedule_at(&load->schedule, t);
     }
 }
 

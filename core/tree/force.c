@@ -10,30 +10,29 @@ static v3 scaled(const double k[3], v3 x) { return bough_v3(k[0] * x.x, k[1] * x
 // -- spring: T = k (l − l₀) + c n·ẋ along n ------------------------------------------------------
 
 typedef struct stretch {
-    bough_mat3 r[2];  // the markers' axes in the ground
-    bough_twist v[2]; // their twists in their own axes
-    v3 n, rate;       // unit vector from the first to the second, its ends' relative velocity
+    bough_frame_motion end[2]; // the markers
+    v3 n, rate;                // unit vector from the first to the second, its ends' relative velocity
     double length, tension;
 } stretch;
 
-static v3 velocity(const stretch *x, int end) { return bough_mat3_mul(x->r[end], x->v[end].linear); }
+// A vector of an end's axes in the ground's.
+static v3 in_ground(const stretch *x, int end, v3 own) {
+    return bough_mat3_mul(x->end[end].pose.rotation, own);
+}
 
 // Length, direction, their rate and the tension of a spring.
 static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int spring) {
     const bough_spring_def *s = &tree->springs[spring];
     stretch x;
-    v3 at[2];
+    v3 velocity[2];
     for (int end = 0; end < 2; end++) {
-        const bough_frame *marker = &tree->markers[s->marker[end]];
-        bough_transform pose = bough_tree_frame_pose(d, marker);
-        at[end] = pose.position;
-        x.r[end] = pose.rotation;
-        x.v[end] = bough_tree_frame_twist(d, marker);
+        x.end[end] = bough_tree_frame_motion(d, &tree->markers[s->marker[end]]);
+        velocity[end] = in_ground(&x, end, x.end[end].twist.linear);
     }
-    v3 way = bough_sub(at[1], at[0]);
+    v3 way = bough_sub(x.end[1].pose.position, x.end[0].pose.position);
     x.length = bough_norm(way);
     x.n = x.length > 0 ? bough_scale(1 / x.length, way) : way;
-    x.rate = bough_sub(velocity(&x, 1), velocity(&x, 0));
+    x.rate = bough_sub(velocity[1], velocity[0]);
     x.tension = s->stiffness * (x.length - s->length) + s->damping * bough_dot(x.n, x.rate);
     return x;
 }
@@ -48,7 +47,7 @@ double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, in
 
 // The force on an end in its own axes: f on the first, −f on the second.
 static bough_wrench pull(const stretch *x, int end, v3 f) {
-    v3 own = bough_mat3_tmul(x->r[end], f);
+    v3 own = bough_mat3_tmul(x->end[end].pose.rotation, f);
     return (bough_wrench){end == 0 ? own : bough_scale(-1, own), {0, 0, 0}};
 }
 
@@ -68,9 +67,9 @@ static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_d
     stretch x = stretch_of(tree, d, spring);
     v3 moved[2], sped[2]; // of each end, in the ground
     for (int end = 0; end < 2; end++) {
-        moved[end] = bough_mat3_mul(x.r[end], shift[end].linear);
-        v3 turned = bough_cross(shift[end].angular, x.v[end].linear);
-        sped[end] = bough_mat3_mul(x.r[end], bough_add(rate[end].linear, turned));
+        moved[end] = in_ground(&x, end, shift[end].linear);
+        v3 turned = bough_cross(shift[end].angular, x.end[end].twist.linear);
+        sped[end] = in_ground(&x, end, bough_add(rate[end].linear, turned));
     }
     // variations of length, direction, and tension
     v3 dx = bough_sub(moved[1], moved[0]), dv = bough_sub(sped[1], sped[0]);
@@ -90,27 +89,16 @@ static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_d
 
 // -- bushing, all in the axes of the first marker ------------------------------------------------
 
-// Pose and motion of the second marker relative to the first.
-typedef struct relative {
-    bough_mat3 r;                 // its axes
-    v3 d, d_rate;                 // its origin
-    v3 theta, omega;              // rotation vector, angular velocity
-    v3 v_second, w_second, w_own; // velocities of the second, angular velocity of the first
-} relative;
+static bough_relative_motion relative_of(const bough_tree *tree, const bough_tree_data *d,
+                                         const bough_bushing_def *b) {
+    bough_frame_motion first = bough_tree_frame_motion(d, &tree->markers[b->marker[0]]);
+    bough_frame_motion second = bough_tree_frame_motion(d, &tree->markers[b->marker[1]]);
+    return bough_relate(&first, &second);
+}
 
-// The second marker's pose and velocities seen from the first marker.
-static relative relative_of(const bough_tree *tree, const bough_tree_data *d, const bough_bushing_def *b) {
-    const bough_frame *first = &tree->markers[b->marker[0]], *second = &tree->markers[b->marker[1]];
-    bough_transform back = bough_transform_inverse(bough_tree_frame_pose(d, first));
-    bough_transform pose = bough_transform_compose(back, bough_tree_frame_pose(d, second));
-    bough_twist own = bough_tree_frame_twist(d, first), other = bough_tree_frame_twist(d, second);
-    relative x = {.r = pose.rotation, .d = pose.position, .w_own = own.angular};
-    x.theta = bough_quaternion_logarithm(bough_quaternion_of_matrix(pose.rotation));
-    x.v_second = bough_mat3_mul(x.r, other.linear);
-    x.w_second = bough_mat3_mul(x.r, other.angular);
-    x.omega = bough_sub(x.w_second, own.angular);
-    x.d_rate = bough_sub(x.v_second, bough_add(own.linear, bough_cross(own.angular, x.d)));
-    return x;
+// Rotation vector of the second marker.
+static v3 rotation_of(const bough_relative_motion *x) {
+    return bough_quaternion_logarithm(bough_quaternion_of_matrix(x->e));
 }
 
 // theory (42), the gradient of ½ θᵀKθ: κ + ½ θ×κ + β θ×(θ×κ), κ = Kθ.
@@ -120,24 +108,25 @@ static v3 elastic_moment(v3 theta, v3 kappa, double beta) {
 }
 
 // Force and moment on the second marker.
-static bough_wrench on_second(const bough_bushing_def *b, const relative *x) {
+static bough_wrench on_second(const bough_bushing_def *b, const bough_relative_motion *x, v3 theta) {
     double beta, slope;
-    bough_log_factors(bough_norm(x->theta), &beta, &slope);
+    bough_log_factors(bough_norm(theta), &beta, &slope);
     v3 force = bough_add(scaled(b->stiffness, x->d), scaled(b->damping, x->d_rate));
-    v3 moment = elastic_moment(x->theta, scaled(b->stiffness + 3, x->theta), beta);
+    v3 moment = elastic_moment(theta, scaled(b->stiffness + 3, theta), beta);
     moment = bough_add(moment, scaled(b->damping + 3, x->omega));
     return (bough_wrench){bough_scale(-1, force), bough_scale(-1, moment)};
 }
 
 static bough_force_pair bushing_force(const bough_tree *tree, const bough_tree_data *d,
                                       const bough_bushing_def *b, double *energy) {
-    relative x = relative_of(tree, d, b);
-    bough_wrench w = on_second(b, &x);
-    *energy = 0.5 * (bough_dot(x.d, scaled(b->stiffness, x.d)) +
-                     bough_dot(x.theta, scaled(b->stiffness + 3, x.theta)));
+    bough_relative_motion x = relative_of(tree, d, b);
+    v3 theta = rotation_of(&x);
+    bough_wrench w = on_second(b, &x, theta);
+    *energy =
+        0.5 * (bough_dot(x.d, scaled(b->stiffness, x.d)) + bough_dot(theta, scaled(b->stiffness + 3, theta)));
     v3 moment = bough_add(w.moment, bough_cross(x.d, w.force));
     return (bough_force_pair){{{bough_scale(-1, w.force), bough_scale(-1, moment)},
-                               {bough_mat3_tmul(x.r, w.force), bough_mat3_tmul(x.r, w.moment)}}};
+                               {bough_mat3_tmul(x.e, w.force), bough_mat3_tmul(x.e, w.moment)}}};
 }
 
 // δ of the elastic moment along δθ
@@ -155,30 +144,31 @@ static v3 moment_change(const bough_bushing_def *b, v3 theta, v3 change) {
 static bough_force_pair bushing_change(const bough_tree *tree, const bough_tree_data *d,
                                        const bough_bushing_def *b, const bough_twist shift[2],
                                        const bough_twist rate[2]) {
-    relative x = relative_of(tree, d, b);
-    bough_wrench w = on_second(b, &x);
+    bough_relative_motion x = relative_of(tree, d, b);
+    v3 theta = rotation_of(&x);
+    bough_wrench w = on_second(b, &x, theta);
     double beta, slope;
-    bough_log_factors(bough_norm(x.theta), &beta, &slope);
+    bough_log_factors(bough_norm(theta), &beta, &slope);
     // variations of the relative rotation, position, angular velocity and velocity, in axes of the first
     // marker
-    v3 eta = bough_sub(bough_mat3_mul(x.r, shift[1].angular), shift[0].angular);
-    v3 once = bough_cross(x.theta, eta);
-    v3 dtheta = bough_axpy(-0.5, once, bough_axpy(beta, bough_cross(x.theta, once), eta));
+    v3 eta = bough_sub(bough_mat3_mul(x.e, shift[1].angular), shift[0].angular);
+    v3 once = bough_cross(theta, eta);
+    v3 dtheta = bough_axpy(-0.5, once, bough_axpy(beta, bough_cross(theta, once), eta));
     // relative displacement and its rate
-    v3 dd = bough_sub(bough_mat3_mul(x.r, shift[1].linear),
+    v3 dd = bough_sub(bough_mat3_mul(x.e, shift[1].linear),
                       bough_add(shift[0].linear, bough_cross(shift[0].angular, x.d)));
     v3 domega = bough_add(bough_cross(eta, x.w_second),
-                          bough_sub(bough_mat3_mul(x.r, rate[1].angular), rate[0].angular));
-    v3 dv = bough_add(bough_cross(eta, x.v_second), bough_mat3_mul(x.r, rate[1].linear));
+                          bough_sub(bough_mat3_mul(x.e, rate[1].angular), rate[0].angular));
+    v3 dv = bough_add(bough_cross(eta, x.v_second), bough_mat3_mul(x.e, rate[1].linear));
     dv = bough_sub(dv, bough_add(rate[0].linear, bough_cross(rate[0].angular, x.d)));
-    dv = bough_sub(dv, bough_cross(x.w_own, dd));
+    dv = bough_sub(dv, bough_cross(x.w_first, dd));
     v3 df = bough_scale(-1, bough_add(scaled(b->stiffness, dd), scaled(b->damping, dv)));
-    v3 dm = bough_scale(-1, bough_add(moment_change(b, x.theta, dtheta), scaled(b->damping + 3, domega)));
+    v3 dm = bough_scale(-1, bough_add(moment_change(b, theta, dtheta), scaled(b->damping + 3, domega)));
     // force and moment on both markers
     v3 arm = bough_add(bough_cross(dd, w.force), bough_cross(x.d, df));
     return (bough_force_pair){{{bough_scale(-1, df), bough_scale(-1, bough_add(dm, arm))},
-                               {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(eta, w.force))),
-                                bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(eta, w.moment)))}}};
+                               {bough_mat3_tmul(x.e, bough_sub(df, bough_cross(eta, w.force))),
+                                bough_mat3_tmul(x.e, bough_sub(dm, bough_cross(eta, w.moment)))}}};
 }
 
 // -- elements ------------------------------------------------------------------------------------

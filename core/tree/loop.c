@@ -63,23 +63,21 @@ bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree) {
 
 // -- rows ------------------------------------------------------------------------------------
 
-// The marker at an end of a closure, and the closure that an equation belongs to.
+// The marker at an end of a closure.
 static const bough_frame *end_of(const bough_tree *tree, int closure, int end) {
     return &tree->markers[tree->closures[closure].marker[end]];
 }
 
-static bough_frame_motion motion_of(const bough_tree_data *d, const bough_frame *frame) {
-    return (bough_frame_motion){bough_tree_frame_pose(d, frame), bough_tree_frame_twist(d, frame)};
-}
-
 void bough_loops_rows(const bough_tree *tree, bough_tree_data *d) {
     for (int c = 0; c < tree->n_closures; c++) {
-        bough_frame_motion a = motion_of(d, end_of(tree, c, 0)), b = motion_of(d, end_of(tree, c, 1));
+        bough_frame_motion a = bough_tree_frame_motion(d, end_of(tree, c, 0));
+        bough_frame_motion b = bough_tree_frame_motion(d, end_of(tree, c, 1));
         bough_constraint_rows(&tree->closures[c].constraint, &a, &b,
                               d->loops->row + tree->closures[c].first_row);
     }
 }
 
+// The closure that an equation belongs to.
 static int closure_of(const bough_tree *tree, int row) {
     int c = tree->n_closures - 1;
     while (tree->closures[c].first_row > row) c--;
@@ -424,7 +422,8 @@ static void jacobian_row(const bough_tree *tree, const bough_tree_data *d, int r
 // What may change besides joints whose speed is zero: those of given speed, the ends of rods.
 enum { JOINTS = 0, GIVEN = 1, ENDS = 2 };
 
-// change (n_v): the least one by which the closures have their values or, `of_rate`, their rates.
+// change (n_v): the least change of the coordinates that makes the closures' values, or, `of_rate`, the least
+// change of the speeds that makes their rates.
 static bool least_squares(bough_tree *tree, bough_tree_data *d, int loose, bool of_rate, double *change) {
     bough_loops *l = d->loops;
     int m = tree->n_rows, n = tree->n_v;

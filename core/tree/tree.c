@@ -60,11 +60,15 @@ bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_fram
     return bough_twist_to_child(&frame->placement, data->twist[frame->link]);
 }
 
+bough_frame_motion bough_tree_frame_motion(const bough_tree_data *data, const bough_frame *frame) {
+    return (bough_frame_motion){bough_tree_frame_pose(data, frame), bough_tree_frame_twist(data, frame)};
+}
+
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame) {
     // from frame axes to ground axes
-    bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
-    bough_twist own = bough_tree_frame_twist(data, frame);
-    return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
+    bough_frame_motion m = bough_tree_frame_motion(data, frame);
+    return (bough_twist){bough_mat3_mul(m.pose.rotation, m.twist.linear),
+                         bough_mat3_mul(m.pose.rotation, m.twist.angular)};
 }
 
 void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,

@@ -171,7 +171,7 @@ typedef struct bough_tree {
     bough_frame *bodies;         // (n_bodies), as in the def
     bough_frame *markers;        // (n_markers), as in the def
     bough_frame *ports;          // (n_ports), as in the def, the marker's placement
-    bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
+    bough_joint_load_def *loads; // (n_loads), as in the def
     double *steered;             // (n_loads × 4) two times, two values: tables of steered loads
     int n_springs;
     bough_spring_def *springs; // (n_springs), as in the def
@@ -188,7 +188,7 @@ typedef struct bough_tree {
     int n_ends;
     bough_frame *ends; // (n_ends), as in the def, the body's frame
     int n_axes;
-    int *axes;                // (n_axes) the ports that have these outputs
+    int *axes;                // (n_axes) the ports that output the ground's axes
     bough_external *external; // (n_markers), changed by bough_tree_set_wrench only
     double *initial;          // initial state (n_q + n_v)
 } bough_tree;
@@ -271,8 +271,9 @@ typedef struct bough_tree_data {
 // The placement of a frame (of tree->bodies, markers or ports) in the ground.
 bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame);
 
-// The twist of a frame in its own axes, and of its origin in ground axes.
+// The twist of a frame in its own axes, the same with its placement, and the twist in ground axes.
 bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame);
+bough_frame_motion bough_tree_frame_motion(const bough_tree_data *data, const bough_frame *frame);
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
 
 // -- building ----------------------------------------------------------------------------------

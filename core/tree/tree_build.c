@@ -139,7 +139,6 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         tree->ends[e].placement = bough_transform_identity();
         add_inertia(tree, &tree->ends[e], def->ends[e].inertia);
     }
-    for (int k = 0; k < def->n_loads; k++) tree->loads[k].body = tree->bodies[def->loads[k].body].link;
 }
 
 // Given motions belong to links of one coordinate.

@@ -220,9 +220,6 @@ static void input_columns(void *self, double t, const double *state, const doubl
     }
 }
 
-// The increment of a state that keeps y + δ − y exact to its last digit
-static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
-
 // Coordinates enter by sines and cosines: their increments do not grow with them. Those of lengths are small
 // against a small mechanism.
 static void find_increments(tree_system *s) {
@@ -243,7 +240,7 @@ static bool find_jacobian(tree_system *s, tree_factors *k) {
     memcpy(s->y, k->state, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
         double y = k->state[j];
-        double d = j < s->tree->n_q ? s->increment[j] : increment_at(y, central_increment);
+        double d = j < s->tree->n_q ? s->increment[j] : central_increment * fmax(1, fabs(y));
         double high = y + d, low = y - d;
         s->y[j] = high;
         bool ok = derivative(s, k->time, s->y, k->input, s->plus);

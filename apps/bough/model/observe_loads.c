@@ -204,7 +204,7 @@ static double joint_torque(const bough_simulation *s, int body, double t) {
     double torque = s->view->passive[v - tree->n_q];
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
-        if (load->body != tree->bodies[body].link) continue;
+        if (load->body != body) continue;
         torque += load->value * bough_schedule_at(&load->schedule, t);
     }
     bool driven = s->scene->body[body].joint.motion[0].node != NULL;
