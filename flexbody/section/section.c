@@ -40,13 +40,20 @@ static void add_congruent(double weight, matrix6 a, matrix6 b, double *sum) {
     }
 }
 
-// The stress at s from the one at the middle: n(s) = n, m(s) = m − (s − s_mid) d₃×n.
-static void carry(double distance, matrix6 t) {
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) t[i][j] = i == j;
-    }
-    t[3][1] = distance;
-    t[4][0] = -distance;
+// b ← weight·aᵀ b a
+static void make_congruent(double weight, matrix6 a, double b[21]) {
+    matrix6 full;
+    bough_symmetric6_unpack(b, full);
+    memset(b, 0, 21 * sizeof *b);
+    add_congruent(weight, a, full, b);
+}
+
+// The stress n(s) = c n, m(s) = c m − arm d₃×n; with c = 1 and arm = s − s_mid it is carried from the middle.
+static void set_stress(double c, double arm, matrix6 stress) {
+    memset(stress, 0, sizeof(matrix6));
+    for (int i = 0; i < 6; i++) stress[i][i] = c;
+    stress[3][1] = arm;
+    stress[4][0] = -arm;
 }
 
 // The stress that a load per length adds to the one carried from the middle of a segment of length h,
@@ -56,10 +63,7 @@ static void carry(double distance, matrix6 t) {
 static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
     double square = sigma * sigma, along = slope ? h * h / 24 - 0.5 * square : -sigma;
     double bend = (slope ? sigma / 6 : 0.5) * (square - 0.25 * h * h);
-    memset(stress, 0, sizeof(matrix6));
-    for (int i = 0; i < 6; i++) stress[i][i] = along;
-    stress[3][1] = -bend;
-    stress[4][0] = bend;
+    set_stress(along, -bend, stress);
 }
 
 // Mass between the left end of a segment and s.
@@ -174,7 +178,7 @@ static void add_compliance(void *context, const bough_section_point *p) {
     bough_symmetric6_rotate(damping, angle, damping);
     bough_symmetric6_unpack(compliance, f);
     bough_symmetric6_unpack(damping, d);
-    carry(s - c->middle, t);
+    set_stress(1, s - c->middle, t);
     add_congruent(weight, t, f, c->compliance);
     add_product(1, f, t, ft);
     add_congruent(weight, ft, d, c->loss);
@@ -240,16 +244,10 @@ static void strain_map(segment_geometry shape, double h, matrix6 q) {
 
 // Sums over a segment divided by its length, in the rod's strains.
 static void change_strains(segment_sum *c, matrix6 q) {
-    matrix6 transposed, compliance;
-    double f[21] = {0};
+    matrix6 transposed;
     for (int i = 0; i < 36; i++) transposed[i / 6][i % 6] = q[i % 6][i / 6];
-    bough_symmetric6_unpack(c->compliance, compliance);
-    add_congruent(1 / c->length, transposed, compliance, f);
-    memcpy(c->compliance, f, sizeof f);
-    bough_symmetric6_unpack(c->loss, compliance);
-    memset(f, 0, sizeof f);
-    add_congruent(1 / c->length, transposed, compliance, f);
-    memcpy(c->loss, f, sizeof f);
+    make_congruent(1 / c->length, transposed, c->compliance);
+    make_congruent(1 / c->length, transposed, c->loss);
     for (int slope = 0; slope < 2; slope++) {
         matrix6 line = {{0}};
         add_product(1 / c->length, transposed, c->line[slope], line);
@@ -314,10 +312,10 @@ typedef struct segment_laws {
 static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n,
                              const segment_laws *laws) {
     double from = def->span[n], to = def->span[n + 1];
-    double *stiffness = laws->stiffness + 21 * n, *damping = laws->damping + 21 * n;
+    double *stiffness = laws->stiffness + 21 * n;
     segment_sum c = {
         .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
-    matrix6 q, k, loss;
+    matrix6 q, k;
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
     lump_left(&c);
     bough_section_integrate(a, from, to, add_compliance, &c);
@@ -326,8 +324,8 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     change_strains(&c, q);
     if (!c.definite || !bough_symmetric6_inverse(c.compliance, stiffness)) return false;
     bough_symmetric6_unpack(stiffness, k);
-    bough_symmetric6_unpack(c.loss, loss);
-    add_congruent(1, k, loss, damping);
+    make_congruent(1, k, c.loss);
+    memcpy(laws->damping + 21 * n, c.loss, sizeof c.loss);
     memcpy(laws->line + 72 * n, c.line, sizeof c.line);
     bow_matrix(&c, q, k, laws->bow + 10 * n);
     for (int i = 0; i < 9; i++) laws->taper[9 * n + i] = 12 / (c.length * c.length * c.length) * c.taper[i];

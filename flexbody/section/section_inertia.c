@@ -43,6 +43,16 @@ static bough_mat3 section_tensor(const double inertia[4]) {
     return (bough_mat3){{inertia[0], inertia[2], 0}, {inertia[2], inertia[1], 0}, {0, 0, inertia[3]}};
 }
 
+enum { FINE, RIGID, WAYS };
+
+// Inertia of one segment at its two vertices.
+typedef struct segment_inertia {
+    bough_vertex_inertia side[WAYS][2];
+    double shift[2];             // first moments of the fine way along the segment [kg m]
+    bough_axial_mass left[WAYS]; // at the left vertex
+    bool rigid;                  // the way taken
+} segment_inertia;
+
 typedef struct lumping {
     const bough_section_axis *axis;
     const bough_rod_def *def;
@@ -51,7 +61,7 @@ typedef struct lumping {
     double curvature;            // ∫ρ (s − a)(b − s) [kg m²]
     double second;               // of the left vertex by hat functions, ∫ρ (s − a)²(b − s)/h [kg m²]
     bough_vec3 offset_curvature; // ∫ρ c (s − a)(b − s), c the mass centre's offset, BRF [kg m³]
-    bough_vertex_inertia fine[2], rigid[2]; // on the two vertices
+    segment_inertia sum;
 } lumping;
 
 // A mass element: its position and orientation in the axes of a vertex.
@@ -119,8 +129,8 @@ static void add_mass(void *context, const bough_section_point *p) {
         double hat = side == 0 ? 1 - fraction : fraction;
         element on_chord = element_of(c, &x, section, weight, k + side, chord);
         element in_place = element_of(c, &x, section, weight, k + side, def->position[k + side]);
-        lump(&on_chord, hat, side == 0 ? 1 - twisted : twisted, &c->fine[side]);
-        lump(&in_place, hat, hat, &c->rigid[side]);
+        lump(&on_chord, hat, side == 0 ? 1 - twisted : twisted, &c->sum.side[FINE][side]);
+        lump(&in_place, hat, hat, &c->sum.side[RIGID][side]);
     }
     double bubble = weight * x.mass * (s - a) * (b - s);
     bough_vec3 centre = bough_mat3_mul(section, bough_v3(x.centre[0], x.centre[1], 0));
@@ -139,7 +149,7 @@ static void add_end_terms(lumping *c) {
         bough_mat3 axes = bough_rotation_matrix(def->rotation[k + side]);
         double sign = side == 0 ? 1 : -1;
         bough_vec3 along = bough_mat3_tmul(axes, bough_scale(sign * 0.5 / (h * h), chord));
-        bough_vertex_inertia *v = &c->fine[side];
+        bough_vertex_inertia *v = &c->sum.side[FINE][side];
         v->moment = bough_axpy(c->curvature, along, v->moment);
         add_offsets(v->inertia, 2, along, bough_mat3_tmul(axes, c->offset_curvature));
     }
@@ -159,45 +169,35 @@ static void add_gain(lumping *c, bough_section_mass gain) {
         bough_mat3 axes = bough_rotation_matrix(def->rotation[k + side]);
         bough_vec3 along = bough_mat3_tmul(axes, chord);
         bough_vec3 second = bough_mat3_tmul(axes, bough_sub(moment[1], moment[0]));
-        bough_vertex_inertia *v = &c->fine[side];
+        bough_vertex_inertia *v = &c->sum.side[FINE][side];
         v->mass += mass[side];
         v->moment = bough_add(v->moment, bough_mat3_tmul(axes, moment[side]));
         add_offsets(v->inertia, -0.5, along, second);
     }
 }
 
-// Inertia of one segment at its vertices, fine (0) and rigid (1).
-typedef struct segment_inertia {
-    bough_vertex_inertia side[2][2]; // way, side
-    double shift[2];                 // first moments of the fine way along the segment [kg m]
-    bough_axial_mass left[2];        // of each way, at the left vertex
-    bool rigid;                      // the way taken
-} segment_inertia;
-
 static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k,
                                     bough_section_mass gain) {
     lumping c = {.axis = a, .def = def, .segment = k};
-    segment_inertia s = {.rigid = false};
     double from = def->span[k], to = def->span[k + 1];
     bough_section_integrate(a, from, to, add_twist, &c);
     bough_section_integrate(a, from, to, add_mass, &c);
     double h = to - from, bend = c.curvature / h;
-    s.shift[0] = 0.5 * bend + gain.moment.z;
-    s.shift[1] = h * gain.mass - s.shift[0];
+    segment_inertia *s = &c.sum;
+    s->shift[0] = 0.5 * bend + gain.moment.z;
+    s->shift[1] = h * gain.mass - s->shift[0];
     add_end_terms(&c);
     add_gain(&c, gain);
-    memcpy(s.side[0], c.fine, sizeof c.fine);
-    memcpy(s.side[1], c.rigid, sizeof c.rigid);
-    const double moment[2] = {s.shift[0], bend},
+    const double moment[2] = {s->shift[0], bend},
                  second[2] = {h * gain.moment.z - h * h * gain.mass / 2, c.second};
     bough_vec3 chord = bough_scale(1 / h, bough_sub(def->position[k + 1], def->position[k]));
     chord = bough_mat3_tmul(bough_rotation_matrix(def->rotation[k]), chord);
     for (int way = 0; way < 2; way++) {
-        const bough_vertex_inertia *v = &s.side[way][0];
+        const bough_vertex_inertia *v = &s->side[way][0];
         bough_vec3 offset = bough_axpy(-moment[way], chord, v->moment);
-        s.left[way] = (bough_axial_mass){v->mass, moment[way], second[way], offset};
+        s->left[way] = (bough_axial_mass){v->mass, moment[way], second[way], offset};
     }
-    return s;
+    return *s;
 }
 
 static void add_inertia(const bough_vertex_inertia *part, bough_vertex_inertia *sum) {
