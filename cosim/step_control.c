@@ -11,21 +11,20 @@ bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling
     // a step twice as long has 2^order times the defect; half of the tolerance for safety
     s->easy = 0.5 * def->tolerance * pow(0.5, order);
     s->most = def->least > 0 ? (int)floor(log2(macro_step / def->least) + 1e-6) : 0;
-    s->shortest = HUGE_VAL;
+    s->now.shortest = HUGE_VAL;
     bough_snapshot size = {.move = BOUGH_SNAPSHOT_MEASURE};
     bough_scheme_snapshot(c, &size);
     s->copy = bough_arena_take(arena, size.used);
-    s->n_point = 1;
+    s->now.n_point = 1;
     s->curve = bough_signal_create(arena, c->assembly->n_input);
     bough_arena_each(arena, (size_t)c->assembly->n_input, &s->size, &s->obtained, &s->square);
     return s;
 }
 
 double bough_step_control_end(bough_step_control *s, double from, double to) {
-    int n = 1 << s->level;
-    if (s->part == 0) s->from = from;
-    s->to = to;
-    return s->part + 1 == n ? to : s->from + (to - s->from) * (s->part + 1) / n;
+    int n = 1 << s->now.level;
+    if (s->now.part == 0) s->now.from = from;
+    return s->now.part + 1 == n ? to : s->now.from + (to - s->now.from) * (s->now.part + 1) / n;
 }
 
 // -- copies ---------------------------------------------------------------------------------------
@@ -39,7 +38,7 @@ void bough_step_control_restore(bough_step_control *s, bough_coupling *c) {
 }
 
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot) {
-    bough_snapshot_take(snapshot, s, offsetof(bough_step_control, size)); // decisions come before memory
+    BOUGH_SNAPSHOT(snapshot, s->now);
     bough_snapshot_doubles(snapshot, s->size, s->curve.n);
 }
 
@@ -67,7 +66,7 @@ static double worst_relative(bough_step_control *s, const bough_assembly *a, con
 
 // The obtained inputs: the polynomial through the last synchronisation points, none of them before a jump.
 static void reconstruct(bough_step_control *s, const bough_coupling *c) {
-    int past = c->restart ? 1 : s->n_point;
+    int past = c->restart ? 1 : s->now.n_point;
     s->curve.t0 = c->t0;
     s->curve.t1 = c->t1;
     for (int j = 0; j < s->curve.n; j++) {
@@ -110,19 +109,19 @@ double bough_step_control_defect(bough_step_control *s, const bough_coupling *c)
     double end = defect_near(s, c, c->t1);
     double middle = defect_near(s, c, 0.5 * (c->t0 + c->t1));
     if (!isfinite(end) || !isfinite(middle)) return HUGE_VAL;
-    bool first = c->restart || s->n_point == 1;
+    bool first = c->restart || s->now.n_point == 1;
     return fmax(fmax(end, middle), first ? 0.25 * change_over(s, c) : 0);
 }
 
 // -- decisions ------------------------------------------------------------------------------------
 
-bool bough_step_control_exhausted(const bough_step_control *s) { return s->level >= s->most; }
+bool bough_step_control_exhausted(const bough_step_control *s) { return s->now.level >= s->most; }
 
 // The span in twice as many steps.
 static void refine(bough_step_control *s) {
-    s->level++;
-    s->part *= 2;
-    s->rejected++;
+    s->now.level++;
+    s->now.part *= 2;
+    s->now.rejected++;
 }
 
 bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, double error) {
@@ -133,16 +132,16 @@ bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, d
     }
     if (!isfinite(error)) return false;
     // counts
-    s->accepted++;
-    s->forced += !good;
-    s->shortest = fmin(s->shortest, c->t1 - c->t0);
-    s->n_point = c->restart ? 2 : s->n_point + 1 < BOUGH_PAST ? s->n_point + 1 : BOUGH_PAST - 1;
+    s->now.accepted++;
+    s->now.forced += !good;
+    s->now.shortest = fmin(s->now.shortest, c->t1 - c->t0);
+    s->now.n_point = c->restart ? 2 : s->now.n_point + 1 < BOUGH_PAST ? s->now.n_point + 1 : BOUGH_PAST - 1;
     // the next step, twice as long where the defects are small and an even number of steps is behind
-    s->part++;
-    if (s->part == 1 << s->level) s->part = 0;
-    if (error < s->easy && s->level > 0 && s->part % 2 == 0) {
-        s->level--;
-        s->part /= 2;
+    s->now.part++;
+    if (s->now.part == 1 << s->now.level) s->now.part = 0;
+    if (error < s->easy && s->now.level > 0 && s->now.part % 2 == 0) {
+        s->now.level--;
+        s->now.part /= 2;
     }
     return true;
 }

@@ -12,17 +12,21 @@ typedef struct bough_step_control_def {
     double least;     // shortest macro step [s]
 } bough_step_control_def;
 
-typedef struct bough_step_control {
-    // constant
-    double tolerance, easy; // below `easy` the steps may be twice as long
-    int most;               // levels
-    // by each decision
+// What the decisions so far leave for the next step.
+typedef struct bough_step_decisions {
     int level, part; // the next step is the part-th of 2^level of the span
-    double from, to; // the span [s]
+    double from;     // where the span begins [s]
     long accepted, rejected;
     long forced;     // accepted above the tolerance, because it was the shortest
     double shortest; // step accepted [s]
     int n_point;     // synchronisation points before the step with no jump between
+} bough_step_decisions;
+
+typedef struct bough_step_control {
+    // constant
+    double tolerance, easy; // below `easy` the steps may be twice as long
+    int most;               // levels
+    bough_step_decisions now;
     // by each step
     double *size; // (n_input) of a vector's first: its largest norm so far
     char *copy;   // of the coupling at the start of the step

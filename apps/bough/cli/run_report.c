@@ -195,10 +195,10 @@ static void write_control(bough_summary *s, const bough_run *run) {
     if (!control) return;
     bough_summary_object(s, "step_control");
     bough_summary_number(s, "tolerance", control->tolerance);
-    bough_summary_integer(s, "accepted", control->accepted);
-    bough_summary_integer(s, "rejected", control->rejected);
-    bough_summary_integer(s, "forced", control->forced);
-    bough_summary_number(s, "shortest", control->shortest);
+    bough_summary_integer(s, "accepted", control->now.accepted);
+    bough_summary_integer(s, "rejected", control->now.rejected);
+    bough_summary_integer(s, "forced", control->now.forced);
+    bough_summary_number(s, "shortest", control->now.shortest);
     bough_summary_end(s);
 }
 

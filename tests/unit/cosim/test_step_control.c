@@ -30,9 +30,9 @@ TEST(steps_taken_back_leave_nothing) {
                     check_near(m.mass[i].y[1], fixed.mass[i].y[1], 0, 1e-10);
                 }
             }
-            assert_int_equal(m.master->control->rejected, 3);
-            assert_int_equal(m.master->control->forced, m.master->steps);
-            assert_int_equal(m.master->control->accepted, m.master->steps);
+            assert_int_equal(m.master->control->now.rejected, 3);
+            assert_int_equal(m.master->control->now.forced, m.master->steps);
+            assert_int_equal(m.master->control->now.accepted, m.master->steps);
         }
     }
 }
