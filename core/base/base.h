@@ -72,6 +72,17 @@ static inline double bough_clamp(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
 }
 
+// What follows the last '/' of a path: the name of a file.
+static inline const char *bough_file_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static inline bool bough_ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), n = strlen(end);
+    return n <= length && strcmp(text + length - n, end) == 0;
+}
+
 // For qsort: doubles in rising order.
 static inline int bough_ascending(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;

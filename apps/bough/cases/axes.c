@@ -95,18 +95,13 @@ static void read_axis(bough_schema_reader *r, const bough_node *key, const bough
     check_different(r, axis);
 }
 
-static bool ends_with(const char *text, const char *end) {
-    size_t length = strlen(text), n = strlen(end);
-    return n <= length && strcmp(text + length - n, end) == 0;
-}
-
 // The last part of the key, or as many parts as distinguish it from the other axes' keys.
 static const char *short_label(const bough_study_grid *grid, int axis) {
     const char *key = grid->axis[axis].key;
     for (const char *label = key + strlen(key); label > key; label--) {
         bool unique = label[-1] == '.' && *label;
         for (int i = 0; unique && i < grid->n; i++)
-            unique = i == axis || !ends_with(grid->axis[i].key, label);
+            unique = i == axis || !bough_ends_with(grid->axis[i].key, label);
         if (unique) return label;
     }
     return key;

@@ -228,8 +228,7 @@ void bough_study_json_schema(FILE *stream) {
 // -- reading --------------------------------------------------------------------------------------
 
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene) {
-    const char *slash = scene[0] == '/' ? NULL : strrchr(study, '/');
-    int length = slash ? (int)(slash - study) + 1 : 0;
+    int length = scene[0] == '/' ? 0 : (int)(bough_file_name(study) - study);
     return bough_arena_print(arena, "%.*s%s", length, study, scene);
 }
 

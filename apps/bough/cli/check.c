@@ -375,8 +375,7 @@ static const bough_option rows[] = {
 // A scalar as it must be written beside the scene: a base names files relative to itself.
 static const char *written(void *self, const bough_node *scalar) {
     const bough_scene *scene = self;
-    const char *slash = strrchr(scene->file, '/');
-    size_t length = slash ? (size_t)(slash + 1 - scene->file) : 0;
+    size_t length = (size_t)(bough_file_name(scene->file) - scene->file);
     const bough_schema_base *base = scene->bases;
     while (base && strcmp(base->path, scalar->file) != 0) base = base->next;
     size_t inner = base ? strlen(base->directory) : 0;

@@ -143,8 +143,8 @@ static const char *tidy(bough_arena *arena, const char *path) {
 
 // If files lie in folders above the scene, the scene lies as many folders below resources/.
 static bough_status place_files(export *x) {
-    const char *scene = x->files.item[0].path, *slash = strrchr(scene, '/');
-    size_t length = slash ? (size_t)(slash + 1 - scene) : 0;
+    const char *scene = x->files.item[0].path;
+    size_t length = (size_t)(bough_file_name(scene) - scene);
     int depth = 0;
     x->name = bough_arena_take(x->arena, (size_t)x->files.n * sizeof *x->name);
     for (int k = 0; k < x->files.n; k++) {

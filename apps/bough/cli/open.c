@@ -22,11 +22,6 @@ static bool is_scene(const char *path) {
     return found;
 }
 
-static bool ends_with(const char *name, const char *ending) {
-    size_t length = strlen(name), end = strlen(ending);
-    return length > end && strcmp(name + length - end, ending) == 0;
-}
-
 // Whether a file is called scene.yaml or like the directory.
 static bool is_first(const char *file, const char *folder, size_t length) {
     const char *name = folder + length;
@@ -46,7 +41,7 @@ bough_status bough_find_scene(bough_arena *arena, bough_options *options) {
     for (int k = 0; k < n; k++) {
         const char *name = entry[k]->d_name;
         const char *path = bough_arena_print(arena, "%.*s/%s", (int)length, folder, name);
-        bool named = ends_with(name, ".yaml") || ends_with(name, ".yml");
+        bool named = bough_ends_with(name + 1, ".yaml") || bough_ends_with(name + 1, ".yml");
         if (named && is_scene(path)) {
             only = path;
             if (is_first(name, folder, length)) first = path;
@@ -107,12 +102,11 @@ bough_status bough_open_channels(const bough_scene *scene, const bough_channels 
 
 const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
     if (options->out) return options->out;
-    const char *slash = strrchr(options->operand, '/');
-    const char *name = slash ? slash + 1 : options->operand;
+    const char *name = bough_file_name(options->operand);
     const char *dot = strrchr(name, '.');
     size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    if (slash && slash > options->operand && strcmp(name, "scene.yaml") == 0) { // named after its directory
-        const char *end = slash;
+    if (name > options->operand + 1 && strcmp(name, "scene.yaml") == 0) { // named after its directory
+        const char *end = name - 1;
         for (name = end; name > options->operand && name[-1] != '/'; name--) {
         }
         length = (size_t)(end - name);

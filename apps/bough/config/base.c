@@ -21,10 +21,7 @@ bool bough_node_is_null(const bough_node *node) {
 }
 
 const char *bough_directory_of(bough_arena *arena, const char *path) {
-    char *copy = bough_arena_string(arena, path);
-    char *slash = strrchr(copy, '/');
-    copy[slash == NULL ? 0 : slash - copy + 1] = '\0';
-    return copy;
+    return bough_arena_print(arena, "%.*s", (int)(bough_file_name(path) - path), path);
 }
 
 // -- merging --------------------------------------------------------------------------------------

@@ -289,8 +289,7 @@ const char *bough_deck_path_at(const bough_deck *deck, int line) {
     for (char *p = word; *p; p++) {
         if (*p == '\\') *p = '/';
     }
-    const char *slash = strrchr(deck->path, '/');
-    int folder = slash && word[0] != '/' ? (int)(slash - deck->path) + 1 : 0;
+    int folder = word[0] != '/' ? (int)(bough_file_name(deck->path) - deck->path) : 0;
     snprintf(path, sizeof path, "%.*s%s", folder, deck->path, word);
     if (access(path, F_OK) != 0) respell_path(path);
     return bough_arena_string(deck->arena, path);

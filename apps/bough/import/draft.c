@@ -312,9 +312,8 @@ static bough_status check_scene(bough_draft *d, const char *folder) {
     if (bough_is_ok(&status)) status = bough_scene_read(d->arena, NULL, path, NULL, 0, &errors, &scene);
     if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, scene) : status;
     const bough_error *e = errors.item;
-    const char *slash = strrchr(e->file, '/');
     return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
-                      slash ? slash + 1 : e->file, e->line, e->path, e->text);
+                      bough_file_name(e->file), e->line, e->path, e->text);
 }
 
 // Moves the files to the folder, the scene last, which completes the model; after a failure removes them.

@@ -129,8 +129,7 @@ static void put_head(bough_openfast *o, const char *path) {
     if (!(most >= 0 && most <= 1e6)) {
         bough_deck_refuse(o->main, "TMax", "expected a time from 0 to 1e6 s");
     }
-    const char *slash = strrchr(path, '/');
-    bough_draft_head(o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
+    bough_draft_head(o->draft, bough_file_name(path), "an OpenFAST model", g, most, turn);
     bough_left_out(o, "solver settings, output channels, visualisation, linearisation: the scene has its "
                       "own");
 }

@@ -60,7 +60,7 @@ static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char n
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
     bough_deck *deck = bough_deck_open(o->draft->arena, path, 0, o->draft->status);
-    const char *slash = strrchr(path, '/'), *own = slash ? slash + 1 : path;
+    const char *own = bough_file_name(path);
     if (deck) bough_draft_airfoil_name(own, strcspn(own, "."), number, name);
     return deck;
 }

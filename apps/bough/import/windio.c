@@ -116,9 +116,8 @@ static void choose_start(bough_windio *w) {
 // -- writing --------------------------------------------------------------------------------------
 
 static void put_head(bough_windio *w, const char *path) {
-    const char *slash = strrchr(path, '/');
     const bough_node *name = bough_entry(w->root, "name");
-    const char *title = name && name->kind == BOUGH_SCALAR ? name->text : slash ? slash + 1 : path;
+    const char *title = name && name->kind == BOUGH_SCALAR ? name->text : bough_file_name(path);
     bough_draft_head(w->draft, title, "a WindIO turbine", 9.80665, duration, w->rated_speed);
 }
 

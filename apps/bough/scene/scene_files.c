@@ -56,8 +56,7 @@ static void add_words(list *l, const char *input) {
     size_t size;
     bough_arena *own = bough_arena_child(l->arena);
     char *text = bough_input_read(own, input, BOUGH_INPUT_TEXT, &size, why), *rest = text;
-    const char *slash = strrchr(input, '/');
-    int folder = slash ? (int)(slash + 1 - input) : 0;
+    int folder = (int)(bough_file_name(input) - input);
     for (char *word; text && (word = strtok_r(rest, between, &rest));) {
         char path[PATH_MAX];
         bool absolute = word[0] == '/';
