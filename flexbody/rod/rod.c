@@ -175,36 +175,27 @@ double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, 
 }
 
 void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, const bough_rod_model *model) {
-    scratch->vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES);
-    for (int i = 0; i < model->stride; i++) {
-        scratch->vertex[BOUGH_ROD_P * model->stride + i] = 1; // beyond the last: no rotation
-    }
-    scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
-    scratch->load = bough_rod_vertex_rows(arena, model, 6);
-    scratch->follower = bough_rod_vertex_rows(arena, model, 6);
-    scratch->following = bough_arena_doubles(arena, 3 * (size_t)model->stride);
-    scratch->time = 0;
-    scratch->rest = model->strain0;
-    scratch->turning = false;
-    scratch->along = bough_arena_doubles(arena, 12 * (size_t)model->stride);
-    scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    size_t s = (size_t)model->stride;
+    *scratch = (bough_rod_scratch){.vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES),
+                                   .segment = bough_arena_doubles(arena, 9 * s),
+                                   .load = bough_rod_vertex_rows(arena, model, 6),
+                                   .follower = bough_rod_vertex_rows(arena, model, 6),
+                                   .following = bough_arena_doubles(arena, 3 * s),
+                                   .rest = model->strain0,
+                                   .along = bough_arena_doubles(arena, 12 * s),
+                                   .own_rest = bough_arena_doubles(arena, 6 * s)};
+    for (size_t i = 0; i < s; i++) scratch->vertex[BOUGH_ROD_P * s + i] = 1; // beyond the last: no rotation
 }
 
 void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model) {
-    // on vertices: sampled, and following their motion
-    loads->start = 0;
-    loads->value = bough_rod_vertex_rows(arena, model, 6);
-    loads->rate = bough_rod_vertex_rows(arena, model, 6);
-    loads->curve = bough_rod_vertex_rows(arena, model, 6);
-    loads->damped = false;
-    loads->slope = bough_rod_vertex_rows(arena, model, 12);
-    loads->angle = bough_rod_vertex_rows(arena, model, 4);
-    // along segments, and on schedules: none so far
-    loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
-    loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
-    loads->moving = false;
-    loads->ramped = NULL;
-    memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
+    size_t strains = 6 * (size_t)model->stride;
+    *loads = (bough_rod_loads){.value = bough_rod_vertex_rows(arena, model, 6),
+                               .rate = bough_rod_vertex_rows(arena, model, 6),
+                               .curve = bough_rod_vertex_rows(arena, model, 6),
+                               .slope = bough_rod_vertex_rows(arena, model, 12),
+                               .angle = bough_rod_vertex_rows(arena, model, 4),
+                               .rest = bough_arena_copy(arena, model->strain0, strains * sizeof(double)),
+                               .rest_rate = bough_arena_doubles(arena, strains)};
 }
 
 bough_rod_ramped_load *bough_rod_loads_add(bough_rod_loads *loads, bough_arena *arena,
