@@ -24,8 +24,8 @@ typedef struct guard {
 struct bough_arena {
     block *newest;
     size_t bytes;
-    char *rest;                         // of mapped pages, behind the blocks in them; zero …
-    size_t left;                        // … its size [bytes]
+    char *rest;                         // unused end of the mapped pages, all zero
+    size_t left;                        // its size [bytes]
     guard *guard;                       // the innermost; NULL: none, or a child
     bough_arena *parent, *child, *next; // first child; next child of the same parent
 };

@@ -24,7 +24,6 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_o
 
 static double *vector_at(const bough_arnoldi *a, int k) { return a->basis + (size_t)k * (size_t)a->length; }
 
-// The weighted inner product xᵀ W y.
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y) {
     double sum = 0;
 #pragma omp simd reduction(+ : sum)

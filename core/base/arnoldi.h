@@ -29,6 +29,7 @@ typedef struct bough_arnoldi {
 // Takes the memory for vectors of that length, the weights all 1.
 void bough_arnoldi_create(bough_arena *arena, int length, int capacity, int at_once, bough_arnoldi *a);
 
+// The inner product xᵀ W y, W the weights.
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y);
 
 // Makes x orthogonal to the basis and appends it at length 1; a vector that depends on the basis is dropped.

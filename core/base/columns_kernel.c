@@ -1,5 +1,5 @@
-// As many columns at a time as there are registers for their weights: the sum is read and written once for
-// all of them.
+// Sums of columns, as many at a time as there are registers for their weights: the sum is read and written
+// once for all of them.
 #include "core/base/linalg.h"
 
 enum { AT_ONCE = 8 };

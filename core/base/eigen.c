@@ -88,8 +88,8 @@ static bool is_listed(const search *s, int k) {
     return imaginary > 0 || (imaginary == 0 && (real > 0 || s->op->decaying));
 }
 
-// The first listed ones that are accurate; *sum of their moduli. The rest wander from look to look:
-// the operator is far from normal in the product that is at hand.
+// The first of the listed ones that are accurate; *sum: of their moduli. The others change from look to look,
+// because the operator is far from normal in this inner product.
 static int select(const search *s, int wanted, int *chosen, double *sum) {
     const bough_arnoldi *a = &s->basis;
     int found = 0;
@@ -175,12 +175,6 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
 
 // -- whole ----------------------------------------------------------------------------------------
 
-static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int count) {
-    for (int i = 0; i < count; i++) {
-        bough_arena_each(arena, (size_t)n, &pair[i].shape_real, &pair[i].shape_imag);
-    }
-}
-
 static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_eigen_operator *op, int wanted,
                             bough_eigen_pair *pair, int *found) {
     int first = 9 * wanted / 2 + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
@@ -196,10 +190,12 @@ static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_ei
                           " for fewer",
                           op->name, wanted, accuracy);
     }
-    take_shapes(arena, op->n_shape, pair, *found);
     size_t length = 2 * (size_t)op->length;
     double *x = combine(own, &s.basis, *found, chosen), *y = bough_arena_doubles(own, length);
-    for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], x + (size_t)i * length, y, &pair[i]);
+    for (int i = 0; i < *found; i++) {
+        bough_arena_each(arena, (size_t)op->n_shape, &pair[i].shape_real, &pair[i].shape_imag);
+        fill_pair(&s, chosen[i], x + (size_t)i * length, y, &pair[i]);
+    }
     return bough_ok();
 }
 

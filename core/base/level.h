@@ -16,7 +16,8 @@ typedef enum bough_level {
 // Declares the levels of a function, which has been declared without one.
 #define BOUGH_DECLARE_LEVELS(name) extern __typeof__(name) name##_v2, name##_v3, name##_v4
 
-// That of one level, to be called. A macro with the function's own name calls it at the level of its model.
+// The function that is compiled for a level. A header defines a macro with the function's own name, which
+// calls the one for its model's level.
 #define BOUGH_OF_LEVEL(name, level)                                                                          \
     ((level) == BOUGH_LEVEL_V4 ? name##_v4 : (level) == BOUGH_LEVEL_V3 ? name##_v3 : name##_v2)
 

@@ -41,7 +41,7 @@ typedef struct bough_product {
 } bough_product;
 void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
 
-// The same for few columns b, with all three rows given.
+// The same for few columns of b; rows_a, rows_b and rows_c are given.
 void bough_multiply_few(const bough_product *p, const double *a, const double *b, double *c);
 
 BOUGH_DECLARE_LEVELS(bough_multiply_few);

@@ -23,7 +23,7 @@ BOUGH_INLINE bough_quaternion bough_quaternion_conjugate(bough_quaternion p) {
 // p / |p|; the identity for the zero quaternion.
 bough_quaternion bough_quaternion_normalised(bough_quaternion p);
 
-// The same of one that is not zero, in vector lanes.
+// p / |p| for p ≠ 0, in loops over vector lanes.
 BOUGH_INLINE bough_quaternion bough_quaternion_unit(bough_quaternion p) {
     double scale = 1 / sqrt(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z);
     return (bough_quaternion){scale * p.w, scale * p.x, scale * p.y, scale * p.z};
@@ -59,7 +59,7 @@ BOUGH_INLINE bough_mat3 bough_rotation_about(bough_vec3 a, double angle) {
 // -- tangents of exponential and logarithm ---------------------------------------------------------
 
 // The tangent of the exponential at ψ, J(ψ) v = v + b ψ×v + c ψ×(ψ×v), which takes ψ̇ to the angular velocity
-// in the axes that stand still.
+// in fixed axes.
 typedef struct bough_exp_factors {
     double b, c, db, dc; // and their derivatives by |ψ|²
 } bough_exp_factors;
@@ -92,8 +92,8 @@ BOUGH_INLINE bough_vec3 bough_exp_tangent_change(bough_exp_factors j, bough_vec3
     return bough_add(first, bough_axpy(j.dc * dt, bough_cross(psi, once), bough_scale(j.c, twice)));
 }
 
-// Of the tangent of the logarithm, the inverse of J, θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω, |θ| = `angle`:
-// β = (1 − θ/2 cot θ/2)/θ², and β'/θ.
+// Factors of the tangent of the logarithm, θ̇ = (E − ½ξ(θ) + β ξ(θ)²) ω, the inverse of J, at |θ| = `angle`:
+// β = (1 − θ/2 cot θ/2)/θ², and *slope = β′/θ.
 BOUGH_INLINE void bough_log_factors(double angle, double *beta, double *slope) {
     double a2 = angle * angle;
     if (angle < 0.1) {

@@ -59,7 +59,7 @@ typedef struct bough_system_ops {
     bool (*kept_tangent)(void *self, const void *factors, const double *state_rate, const double *input_rate,
                          double *output_rate);
 
-    // As linearise without input, with members whose tangents may be ahead at another state (n_state).
+    // As linearise without input; members whose tangents may be ahead are linearised at `ahead` (n_state).
     // `keep`: members with kept_tangent keep their tangents, and for the same γ their factors.
     bool (*linearise_ahead)(void *self, double t, const double *state, const double *ahead, bool keep,
                             void *factors);
@@ -87,7 +87,7 @@ typedef struct bough_system {
     const double *initial; // (n_state) where a run starts
     double elastic_rate;   // greatest ratio of stiffness to viscosity of its flexible bodies [1/s]: infinite
                            // without damping, 0 where nothing deforms
-    bool ahead; // its tangents may be those of a state where it will be: open chains of rigid bodies
+    bool ahead; // its tangents may be taken at a state that it will have: open trees of rigid bodies
     const bough_system_ops *ops;
     void *self;
 } bough_system;

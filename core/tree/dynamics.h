@@ -15,8 +15,8 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
 
 // residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the wrenches of
 // ports and ends (6 each) or NULL for none: springs, joint loads, these and external wrenches are
-// within τ and h. Of a prescribed joint it is v̇ − a(t), the others are under a(t); data->drive is
-// set.
+// within τ and h. The row of a prescribed joint is v̇ − a(t), and in the other rows its v̇ is a(t). Sets
+// data->drive.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t, const double *input,
                                  const double *acceleration, double *residual);
 

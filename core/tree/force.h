@@ -5,7 +5,9 @@
 
 #include "core/tree/tree.h"
 
-// An element acts between two markers: the springs, then the bushings, numbered through.
+// Elements act between two markers. They have numbers, the springs before the bushings.
+
+// The wrenches on the two ends of an element.
 typedef struct bough_force_pair {
     bough_wrench on[2];
 } bough_force_pair;

@@ -47,7 +47,8 @@ static bough_mat3 rotation_at(const double *p) {
     return bough_rotation_matrix(bough_quaternion_normalised(load(p)));
 }
 
-// The vector of x along what the joint slides; of two, along the second axis and axis × second.
+// The displacement or velocity by the slides' coordinates or speeds x: along the axis; of two slides along
+// the second axis and axis × second.
 static bough_vec3 slide(const bough_joint *joint, const double *x) {
     switch (slides_of(joint)) {
     case 1: return bough_scale(x[0], joint->axis);

@@ -49,9 +49,9 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *data, int *cl
 // the bodies and closures [1], and its closure. After bough_tree_kinematics.
 double bough_loops_opening(const bough_tree *tree, bough_tree_data *data, int *closure);
 
-// Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,
-// and speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and
-// what remains, where that is impossible. Sets closure_rank, closure_moved, closure_size and
+// Makes the tree's initial state satisfy its closures: coordinates that nearly do by Newton's method, and
+// speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and what remains,
+// where that is impossible. Sets closure_rank, closure_moved, closure_size and
 // closure_dependent of the tree.
 bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *data);
 

@@ -5,7 +5,7 @@
 #include "core/base/arena.h"
 
 typedef struct bough_motion_def {
-    bool given;                   // false: the joint moves by its forces, all else is void
+    bool given;                   // false: the joint moves by its forces, the other fields are not read
     bool speed;                   // what is given is q̇ [rad/s, m/s], else q [rad, m]
     double from, to;              // of the ramp; equal for a constant
     double start, end;            // of the ramp [s]
@@ -16,12 +16,12 @@ typedef struct bough_motion_def {
 } bough_motion_def;
 
 typedef struct bough_motion {
-    int n;             // breaks; n + 1 pieces
-    double *times;     // (n) where pieces meet [s]
-    double *piece;     // (n + 1) × 4: q by powers of the time since the piece's start; the first two
-                       // pieces start at times[0], without breaks at 0
-    double rise;       // what the ramp adds to q or q̇
-    bool of_speed;     // to q̇
+    int n;         // breaks; n + 1 pieces
+    double *times; // (n) where pieces meet [s]
+    double *piece; // (n + 1) × 4: q by powers of the time since the piece's start; the first two
+                   // pieces start at times[0], without breaks at 0
+    double rise;   // what the ramp adds to q, or to q̇ if …
+    bool of_speed;
     double start, end; // [s]
 } bough_motion;
 
@@ -33,8 +33,9 @@ typedef struct bough_motion_point {
 // times increase.
 bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial);
 
-// From t on goes by a cubic from one point to another `span` [s] later, accelerations aside, and on
-// from there: for motions that a controller demands sample by sample. The motion given before is lost.
+// From t on the motion is the cubic from one point to another `span` [s] later, also beyond it; the points'
+// accelerations are not read. For motions that a controller demands sample by sample. The motion given before
+// is lost.
 void bough_motion_steer(bough_motion *motion, double t, double span, bough_motion_point from,
                         bough_motion_point to);
 

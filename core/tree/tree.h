@@ -132,8 +132,8 @@ typedef struct bough_tree_def {
 typedef struct bough_link {
     int parent;                          // link of smaller index, or BOUGH_GROUND
     int body;                            // the def's body whose joint moves it
-    int part;                            // 0; of a universal joint, and of a driven cylindrical
-                                         // one, 0, then 1: two links, the first without a body
+    int part;                            // 0 or 1: a universal joint, and a driven cylindrical one,
+                                         // has two links, the first without a body
     bough_joint_spring spring;           // zero: none
     bough_motion *motion;                // NULL: moved by forces; changed by bough_tree_steer only
     bough_joint joint;                   // placed in the parent link's frame
@@ -259,7 +259,7 @@ typedef struct bough_tree_data {
     double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)
     double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
-    bool factored;             // these three are of the data's coordinates
+    bool factored;             // the last three arrays belong to the data's coordinates
     double *force;             // generalised forces (n_v)
     double *drive;             // forces that drive prescribed joints, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1

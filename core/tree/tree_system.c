@@ -17,8 +17,8 @@ typedef struct tree_system {
     bough_tree_data *data;
     int n;                        // n_q + n_v
     bool prescribed;              // some joints' motions are given
-    bool moved;                   // the kinematics in the data are those of
-    double *at;                   // (n) this state
+    bool moved;                   // the data have the kinematics of the state `at`
+    double *at;                   // (n)
     double *initial, *scale;      // (n)
     double *placed;               // (n) a state with the given motions in place
     double *increment;            // (n_q) of the coordinates for differences

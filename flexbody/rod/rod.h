@@ -174,11 +174,11 @@ typedef struct bough_rod_loads {
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
     double *curve; // (6 × stride) [N/s², N m/s²]
-    bool damped;   // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
-                   // along x and y, its section's rotation about the normal and W₃, j …
-    double *slope; // … by row 4 c + j of this array (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
-                   // vertices whose motion is an input
-    double *angle; // (4 × stride) times the vertex' quaternion it is the rotation about the normal
+    bool damped;   // forces along x and y and the moment about z of the BRF (c) change with the vertex'
+                   // velocity along x and y, its section's rotation about the normal, and W₃ (j):
+    double *slope; // by row 4 c + j (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at vertices whose
+                   // motion is an input
+    double *angle; // (4 × stride) its product with the vertex' quaternion is the rotation about the normal
     double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
     double *rest_rate;             // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
     bool moving;                   // the rate is not zero
@@ -195,10 +195,10 @@ typedef struct bough_rod_scratch {
     // set with the loads:
     double time;        // of the last bough_rod_derivative [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
-    bool turning;       // ramped loads along the segments make part of it, and that of dead ones rotates:
-    double *along;      // the dead ones in the axes of the segments' middles (12 × stride)
+    bool turning;       // `rest` contains ramped loads along the segments; the part by dead ones rotates
+    double *along;      // these dead ones in the axes of the segments' middles (12 × stride)
     double *following;  // forces of the followers per length, in section axes (3 × stride)
-    double *own_rest;   // (6 × stride)
+    double *own_rest;   // (6 × stride) memory for `rest`
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.

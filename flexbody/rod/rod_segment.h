@@ -100,7 +100,7 @@ BOUGH_INLINE bough_mat3 mid_frame_between(bough_quaternion l, bough_quaternion r
     return mid_frame(l, r, copysign(1.0, w), 1 / (1 + fabs(w)));
 }
 
-// y − v×(v×y)/6, and its variations with y and with v, that with v also as what n works on δv.
+// y − v×(v×y)/6, its variation with v, the gradient of n·(y − v×(v×y)/6) by v, and the variation with both.
 BOUGH_INLINE bough_vec3 along_axis(bough_vec3 v, bough_vec3 y) {
     return bough_axpy(-1. / 6 * bough_dot(v, y), v, bough_scale(1 + 1. / 6 * bough_dot(v, v), y));
 }

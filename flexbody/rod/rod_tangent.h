@@ -27,7 +27,8 @@ typedef struct bough_rod_tangent {
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
-    double *root; // of the first segment's forces by configuration and velocities, 9 d + f (2 × 81)
+    double *root; // of the first segment's forces by configuration, then velocities (2 × 81): force f by
+                  // direction d at 9 d + f
     double *end;  // the same of the last segment of a rod that carries bodies (2 × 81)
     double end_rotation[4]; // quaternion of such a rod's last vertex
     double end_load[18];    // change of the loads on it with its rotation: force and moment by columns
@@ -75,6 +76,7 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 // The rod about a steady motion, its BRF at rest or moving at a constant twist, in 6 tangent
 // coordinates per vertex, q = (δx in BRF axes, δφ in section axes):
 //     M q̈ + C q̇ + K q = 0,   δv = q̇ + B q,   C = M B − ∂f/∂v,   K = −(∂f/∂q + ∂f/∂v B).
+// K is a stiffness, at rest minus the tangent K above.
 // B = diag(ξ(ω), ξ(Rᵀω)): the variation of u₀ + ω×x and Rᵀω, the velocities of the steady motion, so
 // gyroscopic terms, spin softening and centrifugal stiffening are exact. No quaternion norms, hence
 // no spurious zero eigenvalues.
