@@ -57,7 +57,7 @@ typedef struct radau {
     double *real, *complex; // factors (n × n), (n × n × 2)
     double *pair;           // (n × 2)
     int *real_pivot, *complex_pivot;
-    double present; // the step size whose factors are really there
+    double present; // the step size of the factors in memory; 0: none
     bool coarse;    // its steps shall not be those of the run beside it
     bough_statistics count;
 } radau;

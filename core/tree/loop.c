@@ -191,7 +191,8 @@ static bool factor(const bough_tree *tree, bough_loops *l) {
     return true;
 }
 
-// After kinematics, bough_loops_rows and free dynamics at this state.
+// M⁻¹Gᵀ and the factors of G M⁻¹Gᵀ, unless they are of these coordinates; after kinematics, bough_loops_rows
+// and free dynamics there.
 static bool find_mobility(const bough_tree *tree, bough_tree_data *d) {
     bough_loops *l = d->loops;
     for (int k = 0; k < tree->n_rows && !l->found; k++) respond(tree, d, k);

@@ -41,9 +41,7 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
 
 // The frame of the first piece: the body's.
 static bough_modal_frame body_frame(const double *input) {
-    return (bough_modal_frame){{input[0], input[1], input[2]},
-                               {input[3], input[4], input[5]},
-                               {input[6], input[7], input[8]},
+    return (bough_modal_frame){bough_v3_load(input), bough_v3_load(input + 3), bough_v3_load(input + 6),
                                bough_transform_identity()};
 }
 
@@ -120,8 +118,8 @@ static void tangent(bough_modal_body *b, const double *y, const double *d, doubl
     // the first frame changes with the input
     frame[0] = (bough_modal_frame_change){0};
     if (d != NULL) {
-        frame[0] =
-            (bough_modal_frame_change){{d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}, {0, 0, 0}};
+        frame[0] = (bough_modal_frame_change){
+            .velocity = bough_v3_load(d), .spin = bough_v3_load(d + 3), .gravity = bough_v3_load(d + 6)};
     }
     // motions outwards
     for (int k = 0; k < m->n_piece; k++) {
