@@ -225,6 +225,42 @@ modes() {
         --set 'modes={about: hub, axis: [1, 0, 0]}'
 }
 
+# Loads on a part of a segment, at a point of one and at an end that carries a body: what lies beyond each section.
+loaded() {
+    cat >../loaded.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 10 ms, macro_step: 10 ms, initial: equilibrium}
+bodies:
+  - name: bar
+    fidelity: rod
+    joint: {kind: fixed, parent: ground}
+    rod: {length: 2 m, segments: 5, stiffness: [1e9, 1e9, 1e9, 1e7, 1e7, 1e7], mass: [1, 0, 0, 1e-3, 1e-3, 0]}
+  - {name: head, fidelity: rigid, mass: 5 kg, inertia: [1, 1, 1], joint: {kind: fixed, parent: bar}}
+sensors: [{body: bar, at: [0.3, 0.6, 0.7, 1.25, 1.35, 1.9, 2]}]
+loads:
+  - {body: bar, along: [0.5, 0.9], force: [10, 0, 0]}
+  - {body: bar, at: 1.3 m, force: [0, 0, -4], moment: [0, 2, 0], frame: follower}
+  - {body: bar, at: tip, force: [3, 0, 0], frame: body}
+EOF
+    expect 0 run ../loaded.yaml --out loaded
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        { for (name in at) last[name] = $at[name] } END { for (name in last) print name, last[name] }' loaded/channels.out >../loaded
+    while read -r place x z y; do # forces, moment about y
+        near ../loaded "^barSpn${place}FLx " 2 "$x" 1e-6
+        near ../loaded "^barSpn${place}FLz " 2 "$z" 1e-6
+        near ../loaded "^barSpn${place}MLy " 2 "$y" 1e-6
+    done <<'EOF'
+1 0.007 -0.004 0.0087
+2 0.006 -0.004 0.00665
+3 0.005 -0.004 0.0061
+4 0.003 -0.004 0.00425
+5 0.003 0 0.00195
+6 0.003 0 0.0003
+7 0.003 0 0
+EOF
+    rm -r loaded
+}
+
 # A scene without states: a spring between the ground and a body that is fixed to it.
 still() {
     cat >../still.yaml <<'EOF'
@@ -244,6 +280,7 @@ EOF
 
 statics
 sensed
+loaded
 still
 modes
 [ $failures -eq 0 ]

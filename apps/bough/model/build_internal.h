@@ -12,6 +12,9 @@
 // Needs the rods and the view of a built simulation.
 void bough_load_link_build(bough_arena *arena, bough_simulation *s);
 
+// Where a load on a rod acts.
+bough_rod_reach bough_load_reach(const bough_scene_load *load, const bough_rod_model *m);
+
 // -- parts that are sampled, as far as the scene has them ------------------------------------------
 
 // Each adds itself to the simulation's sampled loads.

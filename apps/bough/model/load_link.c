@@ -4,7 +4,7 @@
 
 #include "flexbody/rod/rod_load.h"
 
-static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_model *m) {
+bough_rod_reach bough_load_reach(const bough_scene_load *load, const bough_rod_model *m) {
     switch ((bough_scene_load_place)load->place) {
     case BOUGH_SCENE_AT_VERTEX: return (bough_rod_reach){m->span[load->vertex], m->span[load->vertex]};
     case BOUGH_SCENE_AT_SPAN: return (bough_rod_reach){load->span[0], load->span[0]};
@@ -25,16 +25,19 @@ static void resolve(const bough_simulation *s, const bough_beam *beam, const bou
     bough_wrench_store(w, wrench);
 }
 
-static void add_ground(bough_arena *arena, const bough_beam *beam, const bough_scene_load *load) {
-    bough_ground_load_def def = {.reach = reach_of(load, beam->mesh),
+// Both give the schedule that the rod has.
+static const bough_schedule *add_ground(bough_arena *arena, const bough_beam *beam,
+                                        const bough_scene_load *load) {
+    bough_ground_load_def def = {.reach = bough_load_reach(load, beam->mesh),
                                  .schedule = bough_scene_load_schedule(load)};
     memcpy(def.wrench, load->wrench, sizeof def.wrench);
     memcpy(def.end, load->end, sizeof def.end);
     bough_ground_body_load(beam->ground, arena, &def);
+    return &beam->loads->ramped->schedule;
 }
 
-static void add(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
-                const bough_scene_load *load) {
+static const bough_schedule *add(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                                 const bough_scene_load *load) {
     const bough_rod_model *m = beam->mesh;
     bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
     bough_schedule schedule = bough_scene_load_schedule(load);
@@ -43,12 +46,14 @@ static void add(bough_arena *arena, const bough_simulation *s, const bough_beam 
     resolve(s, beam, load, load->wrench, wrench);
     resolve(s, beam, load, load->end, end);
     bool tapered = memcmp(wrench, end, sizeof end) != 0;
-    bough_rod_lump(m, reach_of(load, m), wrench, tapered ? end : NULL, to);
+    bough_rod_lump(m, bough_load_reach(load, m), wrench, tapered ? end : NULL, to);
     if (beam->modal != NULL) bough_rod_lump_line(m, to);
+    return &to->schedule;
 }
 
 // Loads in ground axes on a body that moves come last: loads of the same ramp in body axes are summed before.
 void bough_load_link_build(bough_arena *arena, bough_simulation *s) {
+    s->load_schedule = bough_arena_take(arena, (size_t)s->scene->n_load * sizeof *s->load_schedule);
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < s->scene->n_load; k++) {
             const bough_scene_load *load = &s->scene->load[k];
@@ -57,10 +62,7 @@ void bough_load_link_build(bough_arena *arena, bough_simulation *s) {
             const bough_beam *beam = bough_simulation_beam(s, load->body);
             bool turns = beam->in_ground && load->frame == BOUGH_SCENE_LOAD_GROUND;
             if (turns != (pass == 1)) continue;
-            if (turns)
-                add_ground(arena, beam, load);
-            else
-                add(arena, s, beam, load);
+            s->load_schedule[k] = turns ? add_ground(arena, beam, load) : add(arena, s, beam, load);
         }
     }
 }

@@ -1,5 +1,6 @@
 #include "apps/bough/model/section_loads.h"
 
+#include "apps/bough/model/build_internal.h"
 #include "core/base/linalg.h"
 
 // -- segments -------------------------------------------------------------------------------------
@@ -58,14 +59,7 @@ static bough_vec3 chord(const bough_section_loads *x, int i) {
     return bough_scale(1 / segment_length(x, i), step_between(x, i));
 }
 
-// The force of a segment is constant over its length.
-static bough_section_load middle_load(const bough_section_loads *x, int i) {
-    bough_vec3 moment[2];
-    bough_section_loads_linear(x, i, moment);
-    return (bough_section_load){segment_force(x, i), bough_between(moment[0], moment[1], 0.5)};
-}
-
-// -- inertia --------------------------------------------------------------------------------------
+// -- what acts within a segment -------------------------------------------------------------------
 
 // Change of the acceleration along segment i, per length.
 static bough_vec3 acceleration_slope(const bough_section_loads *x, int i) {
@@ -99,173 +93,137 @@ static bough_section_load inertia_load(const bough_section_loads *x, const bough
                                 bough_add(bough_cross(chord(x, i), arm), bough_cross(offset, a))};
 }
 
+// Load k at a place on segment i, in the body's axes: the whole of a concentrated one, else per length.
+static bough_section_load value_at(const bough_section_loads *x, int k, int i, double place) {
+    const bough_scene_load *l = x->load[k].of;
+    bough_rod_reach reach = x->load[k].reach;
+    double part = reach.to > reach.from ? (place - reach.from) / (reach.to - reach.from) : 0, w[6];
+    for (int c = 0; c < 6; c++) w[c] = x->load[k].factor * (l->wrench[c] + part * (l->end[c] - l->wrench[c]));
+    bough_section_load value = {bough_v3_load(w), bough_v3_load(w + 3)};
+    if (l->frame == BOUGH_SCENE_LOAD_BODY) return value;
+    double fraction = (place - x->beam->def.span[i]) / segment_length(x, i);
+    bough_mat3 axes = l->frame == BOUGH_SCENE_LOAD_GROUND ? x->ground : axes_at(x, i, fraction);
+    return (bough_section_load){bough_mat3_mul(axes, value.force), bough_mat3_mul(axes, value.moment)};
+}
+
+// What of load k acts on segment i, from one place to another, adds to the load in the section at s: as the
+// left vertex' share, or because it lies before s.
+static void add_part(const bough_section_loads *x, int k, int i, bough_rod_reach part, double s, bool share,
+                     bough_section_load *sum) {
+    double h = segment_length(x, i), from = x->beam->def.span[i], half = 0.5 * (part.to - part.from);
+    for (int p = 0; p < (half > 0 ? 2 : 1); p++) { // Gauss's points, exact to degree 3
+        double place = half > 0 ? part.from + half * (1 + (2 * p - 1) / sqrt(3)) : part.from;
+        double weight = (half > 0 ? half : 1) * (share ? 1 - (place - from) / h : -1);
+        bough_section_load value = value_at(x, k, i, place);
+        bough_vec3 arm = bough_scale(share ? s - from : s - place, chord(x, i));
+        value.moment = bough_sub(value.moment, bough_cross(arm, value.force));
+        sum->force = bough_axpy(weight, value.force, sum->force);
+        sum->moment = bough_axpy(weight, value.moment, sum->moment);
+    }
+}
+
+// theory (106, 121): the same by inertia and by the scene's loads; a concentrated one at the section's own
+// place is part of its load.
+static bough_section_load within(const bough_section_loads *x, const bough_rod_place *p) {
+    int i = p->segment;
+    const double *span = x->beam->def.span;
+    double s = p->fraction == 1 ? span[i + 1] : span[i] + p->fraction * segment_length(x, i);
+    bough_section_load sum = inertia_load(x, p);
+    for (int k = 0; k < x->n_load; k++) {
+        bough_rod_reach part = x->load[k].reach;
+        bool point = part.from == part.to, last = i == x->beam->def.n_segment - 1;
+        // a point between two segments belongs to the right one
+        if (part.to < span[i] || part.from > span[i + 1] || (point && !last && part.from == span[i + 1]))
+            continue;
+        part = (bough_rod_reach){fmax(part.from, span[i]), fmin(part.to, span[i + 1])};
+        add_part(x, k, i, part, s, true, &sum);
+        part.to = fmin(part.to, s);
+        if (part.from < s) add_part(x, k, i, part, s, false, &sum);
+    }
+    return sum;
+}
+
+// Force and moment of the segment itself on its bowed axis, and of what is known to act within it.
+static bough_section_load known_load(const bough_section_loads *x, const bough_rod_place *p) {
+    int i = p->segment;
+    double fraction = p->fraction;
+    bough_section_load load = within(x, p);
+    bough_vec3 linear[2], turn = bough_sub(vertex_axes(x, i + 1).c3, vertex_axes(x, i).c3);
+    bough_section_loads_linear(x, i, linear);
+    load.force = bough_add(load.force, segment_force(x, i));
+    load.moment = bough_add(load.moment, bough_between(linear[0], linear[1], fraction));
+    double bow = segment_length(x, i) * fraction * (fraction - 1) / 2;
+    load.moment = bough_axpy(-bow, bough_cross(turn, load.force), load.moment);
+    return load;
+}
+
 // … at the left or the right end of a segment.
-static bough_section_load inertia_at_end(const bough_section_loads *x, int i, bool right) {
+static bough_section_load known_at_end(const bough_section_loads *x, int i, bool right) {
     bough_rod_place end = {.segment = i, .fraction = right};
     if (right) end.inner = x->mass[i];
-    return inertia_load(x, &end);
+    return known_load(x, &end);
 }
 
-static bough_section_load sum_of(bough_section_load a, bough_section_load b) {
-    return (bough_section_load){bough_add(a.force, b.force), bough_add(a.moment, b.moment)};
+// -- what acts on the vertices --------------------------------------------------------------------
+
+static bough_section_load mix(double a, bough_section_load x, double b, bough_section_load y) {
+    return (bough_section_load){bough_axpy(a, x.force, bough_scale(b, y.force)),
+                                bough_axpy(a, x.moment, bough_scale(b, y.moment))};
 }
 
-// -- force and torsional moment -------------------------------------------------------------------
-
-// From the middle of a segment to the next place at which the loads are known, the middle of a neighbour or
-// an end of the rod. The change of the force is that by loads along the rod.
-typedef struct neighbour {
-    bool known, inner;        // no concentrated force lies between both; it is a segment
-    double distance;          // [m], negative towards the root
-    bough_section_load slope; // change per length
-} neighbour;
-
-static neighbour neighbour_of(const bough_section_loads *x, int i, int sign) {
-    int next = i + sign, n = x->beam->def.n_segment;
-    bool inner = next >= 0 && next < n;
-    bough_section_load from = sum_of(middle_load(x, i), inertia_at_end(x, i, sign > 0));
-    bough_section_load to = {{0, 0, 0}, {0, 0, 0}};
-    double length = segment_length(x, i) / 2;
-    if (inner) {
-        to = sum_of(middle_load(x, next), inertia_at_end(x, next, sign < 0));
-        length += segment_length(x, next) / 2;
-    } else if (next < 0) {
-        to = x->root;
-    } else {
-        to = x->end;
+// theory (119): loads per length at the vertices, linear between, that have the resultants of what the
+// vertices carry beyond the known: the air, and inertia of sections that turn.
+static void find_spread(bough_section_loads *x) {
+    int n = x->beam->def.n_segment;
+    for (int j = 0; j <= n; j++) {
+        bough_section_load inner = j > 0 ? known_at_end(x, j - 1, true) : x->root;
+        bough_section_load outer = j < n ? known_at_end(x, j, false) : x->end;
+        double length = (j > 0 ? segment_length(x, j - 1) : 0) + (j < n ? segment_length(x, j) : 0);
+        x->spread[j] = mix(2 / length, inner, -2 / length, outer);
     }
-    bough_vec3 force = bough_sub(to.force, from.force), moment = bough_sub(to.moment, from.moment);
-    bough_section_load slope = {bough_scale(sign / length, force), bough_scale(sign / length, moment)};
-    return (neighbour){!x->kink[i + (sign > 0)], inner, sign * length, slope};
+    bough_section_load first = x->spread[0], last = x->spread[n];
+    double own = n > 1 ? 1.5 : 2;
+    x->spread[0] = mix(own, first, 1 - own, x->spread[1]);
+    x->spread[n] = mix(own, last, 1 - own, n > 1 ? x->spread[n - 1] : first);
 }
 
-// C D q of theory (30): the mean deviation of a segment's moment from a linear one, by the loads along it.
-static bough_vec3 bow_of_loads(const bough_section_loads *x, int i) {
-    const bough_rod_model *m = x->beam->mesh;
-    double stiffness[6][6], moment[3] = {0, 0, 0};
-    bough_symmetric6_unpack(x->beam->def.stiffness + 21 * i, stiffness);
-    for (int k = 0; k < 6; k++) {
-        double strain = x->scratch.rest[k * m->stride + i] - m->strain0[k * m->stride + i];
-        for (int c = 0; c < 3; c++) moment[c] += stiffness[3 + c][k] * strain;
-    }
-    return bough_mat3_mul(axes_at(x, i, 0.5), bough_v3_load(moment));
-}
-
-// theory (119): the force by loads along the rod in the middle of a segment, less its mean.
-static bough_vec3 middle_excess(const bough_section_loads *x, int i, const neighbour *a, const neighbour *b) {
-    double h = segment_length(x, i), distance = b->distance - a->distance; // between the places
-    double ends = (b->inner ? 0 : 1 / b->distance) - (a->inner ? 0 : 1 / a->distance);
-    bough_vec3 second = bough_scale(2 / distance, bough_sub(b->slope.force, a->slope.force));
-    return bough_scale(-h * h / (24 - 2 * h * h * ends / distance), second);
-}
-
-// The parabola through the middles of three segments, or of two and an end. A concentrated force makes a
-// step at its vertex: towards it the slope of the segment's other half continues.
-static bough_section_load load_between(const bough_section_loads *x, const bough_rod_place *p) {
+// theory (118)
+static bough_section_load load_at(const bough_section_loads *x, const bough_rod_place *p) {
     int i = p->segment;
-    double offset = (p->fraction - 0.5) * segment_length(x, i);
-    bough_section_load middle = sum_of(middle_load(x, i), inertia_load(x, p));
-    neighbour a = neighbour_of(x, i, -1), b = neighbour_of(x, i, 1);
-    bool left = offset < 0 ? a.known : !b.known;
-    double weight = left ? 0 : 1; // of b's slope
-    if (a.known && b.known && (a.inner || b.inner)) {
-        weight = (offset - a.distance) / (b.distance - a.distance);
-        bough_vec3 excess = middle_excess(x, i, &a, &b);
-        middle.force = bough_add(middle.force, excess);
-        // a neighbour has the same excess, an end has none
-        if (!a.inner) a.slope.force = bough_axpy(-1 / a.distance, excess, a.slope.force);
-        if (!b.inner) b.slope.force = bough_axpy(-1 / b.distance, excess, b.slope.force);
-    } else if (!a.known && !b.known) {
-        return middle;
-    }
-    bough_vec3 force = bough_between(a.slope.force, b.slope.force, weight);
-    bough_vec3 moment = bough_between(a.slope.moment, b.slope.moment, weight);
-    return (bough_section_load){bough_axpy(offset, force, middle.force),
-                                bough_axpy(offset, moment, middle.moment)};
-}
-
-// -- bending moment -------------------------------------------------------------------------------
-
-// Second derivative of the moment by loads along the rod, the mean over the neighbours that no concentrated
-// force separates; `curved`: the part that the forces have as the chords turn.
-static bough_vec3 moment_curvature(const bough_section_loads *x, int i, bough_vec3 *curved) {
-    bough_vec3 loaded = {0, 0, 0}, force = segment_force(x, i);
-    int count = 0;
-    *curved = loaded;
-    for (int side = -1; side <= 1; side += 2) {
-        int next = i + side;
-        if (next < 0 || next >= x->beam->def.n_segment || x->kink[i + (side > 0)]) continue;
-        double distance = side * (segment_length(x, i) + segment_length(x, next)) / 2;
-        bough_vec3 turn = bough_sub(chord(x, next), chord(x, i)), other = segment_force(x, next);
-        bough_vec3 along = bough_between(chord(x, i), chord(x, next), 0.5);
-        bough_vec3 inner = bough_add(force, inertia_at_end(x, i, side > 0).force);
-        bough_vec3 outer = bough_add(other, inertia_at_end(x, next, side < 0).force);
-        bough_vec3 change = bough_cross(bough_sub(outer, inner), along);
-        loaded = bough_axpy(1 / distance, change, loaded);
-        *curved = bough_axpy(1 / distance, bough_cross(bough_between(force, other, 0.5), turn), *curved);
-        count++;
-    }
-    *curved = bough_scale(count > 1 ? 0.5 : 1, *curved);
-    return bough_add(*curved, bough_scale(count > 1 ? 0.5 : 1, loaded));
-}
-
-// theory (118): a parabola of known mean over the segment. In the outer half of the first and the last
-// segment it ends at the moment of the root and of the end.
-static bough_vec3 bending_at(const bough_section_loads *x, const bough_rod_place *p) {
-    const bough_beam *beam = x->beam;
-    int n = beam->def.n_segment, i = p->segment;
-    double f = p->fraction;
-    double square = segment_length(x, i) * segment_length(x, i);
-    bough_vec3 curved, bend = bough_scale(square / 2, moment_curvature(x, i, &curved)), linear[2];
-    bough_vec3 mean = bough_axpy(-square / 12, curved, bow_of_loads(x, i));
-    bough_vec3 middle = bough_axpy(-1. / 12, bend, bough_add(mean, middle_load(x, i).moment));
-    bough_vec3 inertia = inertia_load(x, p).moment;
-    if (i == 0 && f < 0.5) {
-        bough_vec3 root = bough_sub(x->root.moment, inertia_at_end(x, i, false).moment);
-        bough_vec3 straight = bough_add(inertia, bough_between(root, middle, 2 * f));
-        return bough_axpy(f * (f - 0.5), bend, straight);
-    }
-    if (i == n - 1 && f > 0.5 && !x->kink[n]) {
-        bough_vec3 end = bough_sub(x->end.moment, inertia_at_end(x, i, true).moment);
-        bough_vec3 straight = bough_add(inertia, bough_between(middle, end, 2 * f - 1));
-        return bough_axpy((f - 0.5) * (f - 1), bend, straight);
-    }
-    bough_section_loads_linear(x, i, linear);
-    bough_vec3 straight = bough_add(inertia, bough_between(linear[0], linear[1], f));
-    return bough_axpy((f - 0.5) * (f - 0.5) - 1. / 12, bend, bough_add(mean, straight));
+    double f = p->fraction, h = segment_length(x, i);
+    double left = f * (f * f / 6 - f / 2 + 1. / 3), right = f * (1 - f * f) / 6;
+    const bough_section_load *a = &x->spread[i], *b = a + 1;
+    bough_section_load more = mix(h * (1. / 3 - f + f * f / 2), *a, h * (1. / 6 - f * f / 2), *b);
+    bough_vec3 arm = bough_axpy(left, a->force, bough_scale(right, b->force));
+    more.moment = bough_axpy(-h * h, bough_cross(chord(x, i), arm), more.moment);
+    return mix(1, known_load(x, p), 1, more);
 }
 
 // -- whole ----------------------------------------------------------------------------------------
 
-// Of a load within a segment both vertices of the segment are marked.
-static bool *find_kinks(bough_arena *arena, const bough_scene *scene, const bough_beam *beam) {
-    int n = beam->def.n_segment;
-    const double *span = beam->def.span;
-    bool *kink = bough_arena_take(arena, ((size_t)n + 1) * sizeof *kink);
-    for (int k = 0; k < scene->n_load; k++) {
-        const bough_scene_load *load = &scene->load[k];
-        if (load->body_name == NULL || &scene->body[load->body] != beam->body) continue;
-        if (load->place == BOUGH_SCENE_AT_VERTEX) kink[load->vertex] = true;
-        if (load->place == BOUGH_SCENE_AT_TIP) kink[n] = true;
-        for (int i = 0; load->place == BOUGH_SCENE_AT_SPAN && i < n; i++) {
-            kink[i] |= load->span[0] >= span[i] && load->span[0] < span[i + 1];
-            kink[i + 1] |= load->span[0] > span[i] && load->span[0] <= span[i + 1];
-        }
+static void find_scene_loads(bough_arena *arena, bough_section_loads *x) {
+    const bough_simulation *s = x->simulation;
+    x->load = bough_arena_take(arena, (size_t)s->scene->n_load * sizeof *x->load);
+    for (int k = 0; k < s->scene->n_load; k++) {
+        const bough_scene_load *load = &s->scene->load[k];
+        if (load->body_name == NULL || &s->scene->body[load->body] != x->beam->body) continue;
+        x->load[x->n_load++] =
+            (bough_section_scene_load){load, s->load_schedule[k], bough_load_reach(load, x->beam->mesh), 0};
     }
-    kink[n] &= beam->end < 0; // the wrench of bodies on the end is known
-    return kink;
 }
 
 bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
                                                const bough_beam *beam) {
     const bough_rod_model *m = beam->mesh;
-    bough_section_loads x = {.simulation = s, .beam = beam, .kink = find_kinks(arena, s->scene, beam)};
+    bough_section_loads x = {.simulation = s, .beam = beam};
+    find_scene_loads(arena, &x);
     bough_rod_scratch_init(&x.scratch, arena, m);
     size_t n = (size_t)m->n_segment;
     x.lack = bough_arena_take(arena, n * sizeof *x.lack);
     x.acceleration = bough_arena_take(arena, (n + 1) * sizeof *x.acceleration);
     x.centre = bough_arena_doubles(arena, n + 1);
     x.mass = bough_arena_take(arena, n * sizeof *x.mass);
+    x.spread = bough_arena_take(arena, (n + 1) * sizeof *x.spread);
     for (int i = 0; i <= m->n_segment; i++) {
         x.centre[i] = m->span[i] + m->vertex[i].moment.z / m->vertex[i].mass;
         if (i == m->n_segment) break;
@@ -301,7 +259,24 @@ static void find_lack(bough_section_loads *x) {
     }
 }
 
-// Forces and moments at the ends.
+// The scene's loads at t; those at the tip are part of the load there.
+static void set_scene_loads(bough_section_loads *x, double t) {
+    const bough_simulation *s = x->simulation;
+    const bough_beam *beam = x->beam;
+    const bough_rod_model *m = beam->mesh;
+    double tip = m->span[m->n_segment];
+    bough_mat3 frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+    x->ground = bough_mat3_transpose(frame);
+    for (int k = 0; k < x->n_load; k++) {
+        x->load[k].factor = bough_schedule_at(x->load[k].schedule, t);
+        if (x->load[k].reach.from != tip) continue;
+        bough_section_load at_tip = value_at(x, k, m->n_segment - 1, tip);
+        x->end.force = bough_add(x->end.force, at_tip.force);
+        x->end.moment = bough_add(x->end.moment, at_tip.moment);
+    }
+}
+
+// The wrenches of what is beyond the ends.
 static void find_ends(bough_section_loads *x, double t) {
     const bough_beam *beam = x->beam;
     double w[BOUGH_ROD_MOST_OUTPUTS];
@@ -309,6 +284,7 @@ static void find_ends(bough_section_loads *x, double t) {
     bough_simulation_root(x->simulation, beam, t, w);
     bough_vec3 root = bough_v3_load(w), arm = bough_cross(beam->def.position[0], root);
     x->root = (bough_section_load){root, bough_sub(bough_v3_load(w + 3), arm)};
+    x->end = (bough_section_load){{0, 0, 0}, {0, 0, 0}};
     if (beam->end < 0) return;
     bough_vec3 moment = bough_mat3_mul(vertex_axes(x, beam->mesh->n_segment), bough_v3_load(w + 9));
     x->end = (bough_section_load){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
@@ -323,14 +299,14 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     find_ends(x, t);
     for (int i = 0; i <= m->n_segment; i++) x->acceleration[i] = acceleration_of(x, i);
     find_lack(x);
+    set_scene_loads(x, t);
+    find_spread(x);
     return finite;
 }
 
 bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place,
                                           bough_mat3 *axes) {
     *axes = axes_at(x, place->segment, place->fraction);
-    bough_section_load load = load_between(x, place);
-    bough_vec3 moment = bough_mat3_tmul(*axes, bending_at(x, place));
-    moment.z = bough_mat3_tmul(*axes, load.moment).z; // a segment's moment has no slope in torsion
-    return (bough_section_load){bough_mat3_tmul(*axes, load.force), moment};
+    bough_section_load load = load_at(x, place);
+    return (bough_section_load){bough_mat3_tmul(*axes, load.force), bough_mat3_tmul(*axes, load.moment)};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/bough/model/simulation.h"
+#include "flexbody/rod/rod_load.h"
 
 // Axes between two rotations: p at fraction 0, q at fraction 1.
 static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double fraction) {
@@ -14,16 +15,27 @@ typedef struct bough_section_load {
     bough_vec3 force, moment; // of the outer part on the inner part [N], [N m]
 } bough_section_load;
 
+// A load of the scene on the rod.
+typedef struct bough_section_scene_load {
+    const bough_scene_load *of;
+    const bough_schedule *schedule; // of its factor
+    bough_rod_reach reach;
+    double factor; // at the evaluation
+} bough_section_scene_load;
+
 typedef struct bough_section_loads {
     const bough_simulation *simulation;
     const bough_beam *beam;
-    bool *kink;                   // (n_segment + 1) a concentrated force acts on the vertex
-    bough_rod_scratch scratch;    // vertices and segments at the evaluation
-    bough_section_load *lack;     // (n_segment) theory (120), at the left vertices, in the body's axes
-    bough_axial_mass *mass;       // (n_segment) of whole segments
-    double *centre;               // (n_segment + 1) arc length of the vertices' mass centres [m]
-    bough_vec3 *acceleration;     // (n_segment + 1) a − g there, in the body's axes [m/s²]
-    bough_section_load root, end; // in the body's axes; end: zero but for a rod that carries bodies
+    int n_load;
+    bough_section_scene_load *load; // (n_load)
+    bough_mat3 ground;              // from ground to the body's axes
+    bough_rod_scratch scratch;      // vertices and segments at the evaluation
+    bough_section_load *lack;       // (n_segment) theory (120), at the left vertices, in the body's axes
+    bough_axial_mass *mass;         // (n_segment) of whole segments
+    double *centre;                 // (n_segment + 1) arc length of the vertices' mass centres [m]
+    bough_vec3 *acceleration;       // (n_segment + 1) a − g there, in the body's axes [m/s²]
+    bough_section_load *spread;     // (n_segment + 1) theory (119), per length, in the body's axes
+    bough_section_load root, end;   // in the body's axes; end: of bodies and loads on it
 } bough_section_loads;
 
 // A place on a rod: within a segment, at a fraction of its length.

@@ -41,7 +41,6 @@ void bough_shape_points(void *self, double *point) {
     }
 }
 
-// At a vertex the mean of both sides, which differ by a load on the vertex.
 static void rod_loads(const bough_shape *shape, int body, double t, double *force, double *moment) {
     const bough_simulation *s = shape->simulation;
     const bough_beam *beam = bough_simulation_beam(s, body);
@@ -50,15 +49,13 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     bough_mat3 frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
     if (!bough_section_loads_evaluate(loads, t)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
-        int inner = k > 0 ? k - 1 : 0, outer = k < beam->def.n_segment ? k : k - 1;
-        bough_rod_place before = bough_section_loads_place(loads, inner, k - inner);
-        bough_rod_place after = bough_section_loads_place(loads, outer, k - outer);
+        int segment = k < beam->def.n_segment ? k : k - 1;
+        bough_rod_place place = bough_section_loads_place(loads, segment, k - segment);
         bough_mat3 axes;
-        bough_section_load a = bough_section_loads_at(loads, &before, &axes);
-        bough_section_load b = bough_section_loads_at(loads, &after, &axes);
+        bough_section_load load = bough_section_loads_at(loads, &place, &axes);
         axes = bough_mat3_product(frame, axes);
-        bough_v3_store(bough_mat3_mul(axes, bough_between(a.force, b.force, 0.5)), force + 3 * k);
-        bough_v3_store(bough_mat3_mul(axes, bough_between(a.moment, b.moment, 0.5)), moment + 3 * k);
+        bough_v3_store(bough_mat3_mul(axes, load.force), force + 3 * k);
+        bough_v3_store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
     }
 }
 

@@ -43,14 +43,15 @@ typedef struct bough_simulation {
     bough_beam *beam;  // (n_beam) bodies that have a rod, in the scene's order
     bough_member *rod; // (n_rod + n_fmu) in port order, the FMUs last
     int n_rod, n_end, n_fmu;
-    double *input;                      // (scene->n_input) present values, SI; may be set between steps
-    struct bough_aero_link *aero;       // NULL without an aero block
-    struct bough_drag_link *drag;       // NULL without drag of tower and hub
-    struct bough_control_link *control; // NULL without a control block
-    struct bough_validity *validity;    // limits of the models that the run has passed
-    int n_sampled;                      // of these parts, in this order:
-    bough_sampled_load sampled[5];      // inputs, air, drag, control, loads that jump
-    bool jumps;                         // some loads jump
+    double *input;                        // (scene->n_input) present values, SI; may be set between steps
+    struct bough_aero_link *aero;         // NULL without an aero block
+    struct bough_drag_link *drag;         // NULL without drag of tower and hub
+    struct bough_control_link *control;   // NULL without a control block
+    struct bough_validity *validity;      // limits of the models that the run has passed
+    int n_sampled;                        // of these parts, in this order:
+    bough_sampled_load sampled[5];        // inputs, air, drag, control, loads that jump
+    bool jumps;                           // some loads jump
+    const bough_schedule **load_schedule; // (n_load) of the factors of the scene's loads on rods
     bough_master *master;
     bough_pool *pool; // NULL: one thread
     // first and last of the rods that carry the rotor, NULL: none; undeformed top in the frame of the foot
