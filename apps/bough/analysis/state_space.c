@@ -139,13 +139,13 @@ static void name_states(const work *w, bough_state_space *to) {
     for (int i = 0; i < tree->n_links; i++) name_joint(tree, &tree->links[i], to->state);
     for (int i = 1; i < a->n_member; i++) {
         const bough_system *member = &a->member[i]->system;
-        bough_signal_name *state = to->state + a->state_offset[i];
-        if (strcmp(member->kind, "rod") == 0) {
-            name_rod(member, state);
-        } else {
-            for (int k = 0; k < member->n_state; k++)
-                name_state(&state[k], member->name, "state", k + 1, "-");
-        }
+        for (int k = 0; k < member->n_state; k++)
+            name_state(&to->state[a->state_offset[i] + k], member->name, "state", k + 1, "-");
+    }
+    for (int k = 0; k < w->s->n_beam; k++) {
+        const bough_beam *beam = &w->s->beam[k];
+        int i = beam->port + 1; // member of the port
+        if (beam->rod) name_rod(&a->member[i]->system, to->state + a->state_offset[i]);
     }
     for (int k = 0; k < a->n_state; k++) to->state[k].value = w->about[k];
     name_air(w->s, to->n - a->n_state, to->state + a->n_state);
