@@ -70,6 +70,10 @@ typedef struct bough_rod_sections {
                    double strain[6]);
     // mass of segment n up to an arc length
     bough_axial_mass (*mass)(const void *axis, const bough_rod_def *def, int n, double to);
+    // by how much the section at s rotates beyond the straight line between both ends of a segment [rad], for
+    // a unit of force and moment in its middle and of the moment's slope, in the middle's axes (3 × 9);
+    // returns the same of the undeformed rod about its axis
+    double (*bend)(const void *axis, const double span[2], double s, double bend[27]);
     const void *axis;
 } bough_rod_sections;
 

@@ -361,15 +361,21 @@ static void part_stress(const part_sum *c, double s, double stress[6]) {
     stress[4] -= c->left[0] * (s - c->from) - arm[0];
 }
 
+// Of the sections there, in axes of a given twist.
+static void compliance_at(const bough_section_point *p, double twist, matrix6 f) {
+    bough_section_station x = bough_section_of(p->place);
+    double compliance[21];
+    bough_symmetric6_inverse(x.stiffness, compliance); // bough_section_discretise has done so
+    bough_symmetric6_rotate(compliance, twist - x.twist, compliance);
+    bough_symmetric6_unpack(compliance, f);
+}
+
 static void add_part_strain(void *context, const bough_section_point *p) {
     part_sum *c = context;
-    bough_section_station x = bough_section_of(p->place);
     const double s = p->s, weight = p->weight;
-    double compliance[21], stress[6], own[6] = {0};
+    double stress[6], own[6] = {0};
     matrix6 f;
-    bough_symmetric6_inverse(x.stiffness, compliance); // bough_section_discretise has done so
-    bough_symmetric6_rotate(compliance, c->twist - x.twist, compliance);
-    bough_symmetric6_unpack(compliance, f);
+    compliance_at(p, c->twist, f);
     part_stress(c, s, stress);
     for (int i = 0; i < 36; i++) own[i / 6] += f[i / 6][i % 6] * stress[i % 6];
     own[1] += (s - c->middle) * own[3];
@@ -395,6 +401,35 @@ static void part_strain(const void *axis, const bough_rod_model *m, int n, const
     strain_map(shape_between(m->position0 + n, m->rotation0 + n, 1 / h), h, q);
     memset(mean, 0, 6 * sizeof *mean);
     for (int i = 0; i < 36; i++) mean[i / 6] += q[i / 6][i % 6] * c.strain[i % 6] / h;
+}
+
+// -- rotation within a segment --------------------------------------------------------------------
+
+typedef struct bend_sum {
+    double middle, twist; // of the segment's mid frame [m, rad]
+    double weight, *bend;
+} bend_sum;
+
+static void add_bend(void *context, const bough_section_point *p) {
+    bend_sum *c = context;
+    matrix6 f;
+    compliance_at(p, c->twist, f);
+    for (int i = 0; i < 18; i++) c->bend[9 * (i / 6) + i % 6] += c->weight * p->weight * f[3 + i / 6][i % 6];
+    for (int i = 0; i < 9; i++)
+        c->bend[9 * (i / 3) + 6 + i % 3] +=
+            c->weight * p->weight * (p->s - c->middle) * f[3 + i / 3][3 + i % 3];
+}
+
+static double bend_at(const void *axis, const double span[2], double s, double bend[27]) {
+    const bough_section_axis *a = axis;
+    double low = bough_section_at(a, span[0]).twist, high = bough_section_at(a, span[1]).twist;
+    double fraction = (s - span[0]) / (span[1] - span[0]);
+    bend_sum c = {0.5 * (span[0] + span[1]), 0.5 * (low + high), 1 - fraction, bend};
+    memset(bend, 0, 27 * sizeof *bend);
+    bough_section_integrate(a, span[0], s, add_bend, &c);
+    c.weight = -fraction;
+    bough_section_integrate(a, s, span[1], add_bend, &c);
+    return bough_section_mix(fraction, low, high) - bough_section_at(a, s).twist;
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -424,7 +459,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .taper = laws.taper,
                            .bow = laws.bow,
                            .inertia = inertia,
-                           .sections = {part_strain, bough_section_mass_below, a}};
+                           .sections = {part_strain, bough_section_mass_below, bend_at, a}};
     for (int i = 0; i <= n_segment; i++) {
         span[i] = a->arc[a->n - 1] * bough_section_graded(table->grading, (double)i / n_segment);
         position[i] = bough_section_at(a, span[i]).position;

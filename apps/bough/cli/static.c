@@ -201,11 +201,11 @@ static void find_row(const bough_section_loads *x, int table, int i, double valu
     bough_vec3 shift, turn;
     value[0] = table == VERTICES ? span[i] : 0.5 * (span[i] + span[i + 1]);
     if (table == MIDDLES) {
-        bough_mat3 axes;
         bough_rod_place middle = bough_section_loads_place(x, i, 0.5);
-        bough_section_load load = bough_section_loads_at(x, &middle, &axes);
-        bough_v3_store(load.force, value + 1);
-        bough_v3_store(load.moment, value + 4);
+        bough_section_load load = bough_section_loads_at(x, &middle);
+        bough_mat3 axes = bough_section_loads_axes(x, &middle, &turn);
+        bough_v3_store(bough_mat3_tmul(axes, load.force), value + 1);
+        bough_v3_store(bough_mat3_tmul(axes, load.moment), value + 4);
         return;
     }
     bough_simulation_shift(x->simulation, x->beam, i, &shift, &turn);

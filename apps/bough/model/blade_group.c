@@ -125,7 +125,8 @@ static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_mod
         for (int end = 0; end < 2; end++) {
             vertex_of(m, state + group->first[k], i - 1 + end, &x[end], &p[end]);
         }
-        bough_vec3 chord = bough_mat3_tmul(bough_axes_between(p[0], p[1], 0.5), bough_sub(x[1], x[0]));
+        bough_vec3 chord = bough_mat3_tmul(bough_rotation_matrix(bough_rotation_between(p[0], p[1], 0.5)),
+                                           bough_sub(x[1], x[0]));
         sum = bough_axpy(1.0 / group->n, chord, sum);
     }
     return sum;
@@ -145,7 +146,8 @@ static void average_rods(const bough_blade_group *group, const double *state, do
         }
         p = bough_quaternion_normalised((bough_quaternion){sum[0], sum[1], sum[2], sum[3]});
         vertex_of(m, mean, i - 1, &x, &before);
-        x = bough_add(x, bough_mat3_mul(bough_axes_between(before, p, 0.5), mean_chord(group, m, i, state)));
+        x = bough_add(x, bough_mat3_mul(bough_rotation_matrix(bough_rotation_between(before, p, 0.5)),
+                                        mean_chord(group, m, i, state)));
         const double values[7] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
         for (int c = 0; c < 7; c++) mean[c * n + i - 1] = values[c];
     }

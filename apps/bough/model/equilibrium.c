@@ -356,7 +356,7 @@ static place place_at(const bough_simulation *s, const bough_beam *beam, double 
     while (k + 1 < m->n_segment && span > m->span[k + 1]) k++;
     double part = (span - m->span[k]) / (m->span[k + 1] - m->span[k]);
     place a = place_of(s, beam, k), b = place_of(s, beam, k + 1);
-    bough_mat3 axes = bough_axes_between(a.turn, b.turn, part);
+    bough_mat3 axes = bough_rotation_matrix(bough_rotation_between(a.turn, b.turn, part));
     return (place){bough_between(a.position, b.position, part), bough_quaternion_of_matrix(axes)};
 }
 

@@ -14,13 +14,6 @@ typedef struct sensor {
 
 enum { PLACE_CHANNELS = 12 };
 
-// Rotation vector of a section against the undeformed one, in the body's axes.
-static bough_vec3 vertex_turn(const sensor *x, int i) {
-    bough_quaternion back = bough_quaternion_conjugate(x->loads.beam->def.rotation[i]);
-    return bough_quaternion_logarithm(
-        bough_quaternion_product(bough_section_loads_rotation(&x->loads, i), back));
-}
-
 // Displacement of a vertex, and slope of the axis there by rotation, (R − R₀) e₃, in the body's axes.
 static bough_vec3 vertex_shift(const sensor *x, int i) {
     return bough_sub(bough_section_loads_position(&x->loads, i), x->loads.beam->def.position[i]);
@@ -31,32 +24,18 @@ static bough_vec3 vertex_slope(const sensor *x, int i) {
     return bough_sub(now.c3, bough_rotation_matrix(x->loads.beam->def.rotation[i]).c3);
 }
 
-// Change of curvature over a segment, by its moments; `axes` are those of its sections.
-static bough_vec3 curvature_change(const sensor *x, int segment, const bough_mat3 *axes) {
-    double m[3], k[3] = {0, 0, 0}, compliance[21];
-    bough_vec3 moment[2];
-    bough_section_loads_linear(&x->loads, segment, moment);
-    bough_v3_store(bough_mat3_tmul(*axes, bough_sub(moment[1], moment[0])), m);
-    if (bough_symmetric6_inverse(x->loads.beam->def.stiffness + 21 * segment, compliance))
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) k[i] += compliance[bough_symmetric6_index(3 + i, 3 + j)] * m[j];
-    return bough_mat3_mul(*axes, bough_v3_load(k));
-}
-
-// Between vertices displacement and rotation are parabolas, whose second derivatives follow from the slopes
-// and the moments at both.
+// Between vertices the displacement is a parabola, whose second derivative follows from the slopes at both.
 static void sample_place(const sensor *x, const bough_rod_place *at, double *value) {
     int left = at->segment, right = left + 1;
     const double *span = x->loads.beam->def.span;
-    bough_mat3 axes;
-    bough_section_load load = bough_section_loads_at(&x->loads, at, &axes);
+    bough_section_load load = bough_section_loads_at(&x->loads, at);
     double bow = at->fraction * (at->fraction - 1) / 2 * (span[right] - span[left]);
-    bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at->fraction);
+    bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at->fraction), turn;
     shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
-    bough_vec3 turn = bough_between(vertex_turn(x, left), vertex_turn(x, right), at->fraction);
-    turn = bough_axpy(bow, curvature_change(x, left, &axes), turn);
+    bough_mat3 axes = bough_section_loads_axes(&x->loads, at, &turn);
     value = bough_observe_vector(turn, BOUGH_DEGREE, bough_observe_vector(shift, 1, value));
-    bough_observe_vector(load.moment, 1e3, bough_observe_vector(load.force, 1e3, value));
+    value = bough_observe_vector(bough_mat3_tmul(axes, load.force), 1e3, value);
+    bough_observe_vector(bough_mat3_tmul(axes, load.moment), 1e3, value);
 }
 
 static void sample_sections(void *self, double t, double *value) {
@@ -68,11 +47,11 @@ static void sample_sections(void *self, double t, double *value) {
     }
 }
 
-static bough_rod_place find_place(const bough_section_loads *loads, double at) {
-    const double *span = loads->beam->def.span;
+static bough_rod_place find_place(const bough_section_loads *x, double span) {
+    const bough_rod_def *def = &x->beam->def;
     int i = 0;
-    while (i < loads->beam->def.n_segment - 1 && span[i + 1] <= at) i++;
-    return bough_section_loads_place(loads, i, (at - span[i]) / (span[i + 1] - span[i]));
+    while (i < def->n_segment - 1 && def->span[i + 1] <= span) i++;
+    return bough_section_loads_place(x, i, (span - def->span[i]) / (def->span[i + 1] - def->span[i]));
 }
 
 // Blades and a tower of one rod have OpenFAST's names.

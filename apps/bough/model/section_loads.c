@@ -36,7 +36,8 @@ static bough_vec3 step_between(const bough_section_loads *x, int i) {
     return bough_sub(bough_section_loads_position(x, i + 1), bough_section_loads_position(x, i));
 }
 
-void bough_section_loads_linear(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
+// The moments of a segment, linear over its length, at its two vertices, in the body's axes [N m].
+static void linear_moments(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
     const bough_section_load *lack = &x->lack[i];
     bough_vec3 left = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
     bough_vec3 right = bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6));
@@ -44,10 +45,14 @@ void bough_section_loads_linear(const bough_section_loads *x, int i, bough_vec3 
     moment[1] = bough_sub(bough_sub(lack->moment, bough_cross(step_between(x, i), lack->force)), right);
 }
 
+static bough_quaternion rotation_at(const bough_section_loads *x, int i, double fraction) {
+    return bough_rotation_between(bough_section_loads_rotation(x, i), bough_section_loads_rotation(x, i + 1),
+                                  fraction);
+}
+
 // The axes of the section at a fraction of a segment's length.
 static bough_mat3 axes_at(const bough_section_loads *x, int i, double fraction) {
-    return bough_axes_between(bough_section_loads_rotation(x, i), bough_section_loads_rotation(x, i + 1),
-                              fraction);
+    return bough_rotation_matrix(rotation_at(x, i, fraction));
 }
 
 static double segment_length(const bough_section_loads *x, int i) {
@@ -68,12 +73,19 @@ static bough_vec3 acceleration_slope(const bough_section_loads *x, int i) {
 }
 
 bough_rod_place bough_section_loads_place(const bough_section_loads *x, int segment, double fraction) {
-    bough_rod_place p = {.segment = segment, .fraction = fraction};
     const bough_rod_sections *sections = &x->beam->mesh->sections;
-    double to = x->beam->def.span[segment] + fraction * segment_length(x, segment);
-    if (fraction == 1) p.inner = x->mass[segment];
-    if (fraction > 0 && fraction < 1) p.inner = sections->mass(sections->axis, &x->beam->def, segment, to);
+    const double *span = x->beam->def.span + segment;
+    double at = span[0] + fraction * segment_length(x, segment);
+    bough_rod_place p = {.segment = segment, .fraction = fraction};
+    p.inner = sections->mass(sections->axis, &x->beam->def, segment, at);
+    p.twist = sections->bend(sections->axis, span, at, p.bend);
     return p;
+}
+
+bough_rod_place bough_section_loads_end(const bough_section_loads *x, int segment, bool right) {
+    bough_rod_place end = {.segment = segment, .fraction = right};
+    if (right) end.inner = x->mass[segment];
+    return end;
 }
 
 // theory (121): what inertia and weight within a segment add, at a place, to the constant force and the
@@ -106,16 +118,16 @@ static bough_section_load value_at(const bough_section_loads *x, int k, int i, d
     return (bough_section_load){bough_mat3_mul(axes, value.force), bough_mat3_mul(axes, value.moment)};
 }
 
-// What of load k acts on segment i, from one place to another, adds to the load in the section at s: as the
-// left vertex' share, or because it lies before s.
-static void add_part(const bough_section_loads *x, int k, int i, bough_rod_reach part, double s, bool share,
-                     bough_section_load *sum) {
+// What load k, from one place to another on segment i, adds to the load in the section at s: by its part that
+// the left vertex has, or because it lies before s.
+static void add_part(const bough_section_loads *x, int k, int i, bough_rod_reach part, double s,
+                     bool at_vertex, bough_section_load *sum) {
     double h = segment_length(x, i), from = x->beam->def.span[i], half = 0.5 * (part.to - part.from);
     for (int p = 0; p < (half > 0 ? 2 : 1); p++) { // Gauss's points, exact to degree 3
         double place = half > 0 ? part.from + half * (1 + (2 * p - 1) / sqrt(3)) : part.from;
-        double weight = (half > 0 ? half : 1) * (share ? 1 - (place - from) / h : -1);
+        double weight = (half > 0 ? half : 1) * (at_vertex ? 1 - (place - from) / h : -1);
         bough_section_load value = value_at(x, k, i, place);
-        bough_vec3 arm = bough_scale(share ? s - from : s - place, chord(x, i));
+        bough_vec3 arm = bough_scale(at_vertex ? s - from : s - place, chord(x, i));
         value.moment = bough_sub(value.moment, bough_cross(arm, value.force));
         sum->force = bough_axpy(weight, value.force, sum->force);
         sum->moment = bough_axpy(weight, value.moment, sum->moment);
@@ -148,19 +160,17 @@ static bough_section_load known_load(const bough_section_loads *x, const bough_r
     int i = p->segment;
     double fraction = p->fraction;
     bough_section_load load = within(x, p);
-    bough_vec3 linear[2], turn = bough_sub(vertex_axes(x, i + 1).c3, vertex_axes(x, i).c3);
-    bough_section_loads_linear(x, i, linear);
+    bough_vec3 linear[2], bend = bough_sub(vertex_axes(x, i + 1).c3, vertex_axes(x, i).c3);
+    linear_moments(x, i, linear);
     load.force = bough_add(load.force, segment_force(x, i));
     load.moment = bough_add(load.moment, bough_between(linear[0], linear[1], fraction));
     double bow = segment_length(x, i) * fraction * (fraction - 1) / 2;
-    load.moment = bough_axpy(-bow, bough_cross(turn, load.force), load.moment);
+    load.moment = bough_axpy(-bow, bough_cross(bend, load.force), load.moment);
     return load;
 }
 
-// … at the left or the right end of a segment.
 static bough_section_load known_at_end(const bough_section_loads *x, int i, bool right) {
-    bough_rod_place end = {.segment = i, .fraction = right};
-    if (right) end.inner = x->mass[i];
+    bough_rod_place end = bough_section_loads_end(x, i, right);
     return known_load(x, &end);
 }
 
@@ -171,32 +181,33 @@ static bough_section_load mix(double a, bough_section_load x, double b, bough_se
                                 bough_axpy(a, x.moment, bough_scale(b, y.moment))};
 }
 
-// theory (119): loads per length at the vertices, linear between, that have the resultants of what the
-// vertices carry beyond the known: the air, and inertia of sections that turn.
-static void find_spread(bough_section_loads *x) {
+// theory (119): what a vertex carries beyond the known, as a load per length there: the air, and inertia of
+// sections that turn.
+static bough_section_load jump_at(const bough_section_loads *x, int j) {
     int n = x->beam->def.n_segment;
-    for (int j = 0; j <= n; j++) {
-        bough_section_load inner = j > 0 ? known_at_end(x, j - 1, true) : x->root;
-        bough_section_load outer = j < n ? known_at_end(x, j, false) : x->end;
-        double length = (j > 0 ? segment_length(x, j - 1) : 0) + (j < n ? segment_length(x, j) : 0);
-        x->spread[j] = mix(2 / length, inner, -2 / length, outer);
-    }
-    bough_section_load first = x->spread[0], last = x->spread[n];
+    bough_section_load inner = j > 0 ? known_at_end(x, j - 1, true) : x->root;
+    bough_section_load outer = j < n ? known_at_end(x, j, false) : x->end;
+    double length = (j > 0 ? segment_length(x, j - 1) : 0) + (j < n ? segment_length(x, j) : 0);
+    return mix(2 / length, inner, -2 / length, outer);
+}
+
+static bough_section_load spread_at(const bough_section_loads *x, int j) {
+    int n = x->beam->def.n_segment;
+    if (j > 0 && j < n) return jump_at(x, j);
     double own = n > 1 ? 1.5 : 2;
-    x->spread[0] = mix(own, first, 1 - own, x->spread[1]);
-    x->spread[n] = mix(own, last, 1 - own, n > 1 ? x->spread[n - 1] : first);
+    return mix(own, jump_at(x, j), 1 - own, jump_at(x, j > 0 ? j - 1 : 1));
 }
 
 // theory (118)
-static bough_section_load load_at(const bough_section_loads *x, const bough_rod_place *p) {
-    int i = p->segment;
-    double f = p->fraction, h = segment_length(x, i);
+bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place) {
+    int i = place->segment;
+    double f = place->fraction, h = segment_length(x, i);
     double left = f * (f * f / 6 - f / 2 + 1. / 3), right = f * (1 - f * f) / 6;
-    const bough_section_load *a = &x->spread[i], *b = a + 1;
-    bough_section_load more = mix(h * (1. / 3 - f + f * f / 2), *a, h * (1. / 6 - f * f / 2), *b);
-    bough_vec3 arm = bough_axpy(left, a->force, bough_scale(right, b->force));
+    bough_section_load a = spread_at(x, i), b = spread_at(x, i + 1);
+    bough_section_load more = mix(h * (1. / 3 - f + f * f / 2), a, h * (1. / 6 - f * f / 2), b);
+    bough_vec3 arm = bough_axpy(left, a.force, bough_scale(right, b.force));
     more.moment = bough_axpy(-h * h, bough_cross(chord(x, i), arm), more.moment);
-    return mix(1, known_load(x, p), 1, more);
+    return mix(1, known_load(x, place), 1, more);
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -223,7 +234,6 @@ bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_s
     x.acceleration = bough_arena_take(arena, (n + 1) * sizeof *x.acceleration);
     x.centre = bough_arena_doubles(arena, n + 1);
     x.mass = bough_arena_take(arena, n * sizeof *x.mass);
-    x.spread = bough_arena_take(arena, (n + 1) * sizeof *x.spread);
     for (int i = 0; i <= m->n_segment; i++) {
         x.centre[i] = m->span[i] + m->vertex[i].moment.z / m->vertex[i].mass;
         if (i == m->n_segment) break;
@@ -252,8 +262,8 @@ static void find_lack(bough_section_loads *x) {
         bough_vec3 slope = acceleration_slope(x, i - 1);
         bough_vec3 a = bough_axpy(m->span[i] - x->centre[i], slope, x->acceleration[i]);
         sum.force = bough_axpy(vertex->added_mass, a, sum.force);
-        bough_vec3 turn = bough_cross(vertex_axes(x, i).c3, slope);
-        sum.moment = bough_axpy(vertex->added_inertia, turn, sum.moment);
+        bough_vec3 angular = bough_cross(vertex_axes(x, i).c3, slope);
+        sum.moment = bough_axpy(vertex->added_inertia, angular, sum.moment);
         sum.moment = bough_add(sum.moment, bough_cross(step_between(x, i - 1), sum.force));
         x->lack[i - 1] = sum;
     }
@@ -300,13 +310,26 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t) {
     for (int i = 0; i <= m->n_segment; i++) x->acceleration[i] = acceleration_of(x, i);
     find_lack(x);
     set_scene_loads(x, t);
-    find_spread(x);
     return finite;
 }
 
-bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place,
-                                          bough_mat3 *axes) {
-    *axes = axes_at(x, place->segment, place->fraction);
-    bough_section_load load = load_at(x, place);
-    return (bough_section_load){bough_mat3_tmul(*axes, load.force), bough_mat3_tmul(*axes, load.moment)};
+// theory (122)
+bough_mat3 bough_section_loads_axes(const bough_section_loads *x, const bough_rod_place *at,
+                                    bough_vec3 *rotation) {
+    int i = at->segment;
+    double stress[9], angle[3] = {0, 0, 0};
+    bough_vec3 linear[2];
+    linear_moments(x, i, linear);
+    const bough_vec3 row[3] = {segment_force(x, i), bough_between(linear[0], linear[1], 0.5),
+                               bough_scale(1 / segment_length(x, i), bough_sub(linear[1], linear[0]))};
+    for (int k = 0; k < 3; k++) bough_v3_store(bough_mat3_tmul(axes_at(x, i, 0.5), row[k]), stress + 3 * k);
+    for (int k = 0; k < 27; k++) angle[k / 9] += at->bend[k] * stress[k % 9];
+    bough_quaternion more = bough_quaternion_exponential(bough_v3_load(angle));
+    bough_quaternion now = bough_quaternion_product(rotation_at(x, i, at->fraction), more);
+    const bough_quaternion *rest = x->beam->def.rotation + i;
+    bough_quaternion back =
+        bough_quaternion_conjugate(bough_rotation_between(rest[0], rest[1], at->fraction));
+    *rotation = bough_quaternion_logarithm(bough_quaternion_product(now, back));
+    bough_quaternion twist = bough_quaternion_exponential(bough_v3(0, 0, at->twist));
+    return bough_rotation_matrix(bough_quaternion_product(now, twist));
 }

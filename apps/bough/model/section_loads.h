@@ -4,16 +4,25 @@
 #include "apps/bough/model/simulation.h"
 #include "flexbody/rod/rod_load.h"
 
-// Axes between two rotations: p at fraction 0, q at fraction 1.
-static inline bough_mat3 bough_axes_between(bough_quaternion p, bough_quaternion q, double fraction) {
+// Between two rotations: p at fraction 0, q at fraction 1.
+static inline bough_quaternion bough_rotation_between(bough_quaternion p, bough_quaternion q,
+                                                      double fraction) {
     bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
     bough_vec3 part = bough_scale(fraction, bough_quaternion_logarithm(step));
-    return bough_rotation_matrix(bough_quaternion_product(p, bough_quaternion_exponential(part)));
+    return bough_quaternion_product(p, bough_quaternion_exponential(part));
 }
 
 typedef struct bough_section_load {
     bough_vec3 force, moment; // of the outer part on the inner part [N], [N m]
 } bough_section_load;
+
+// A place on a rod: within a segment, at a fraction of its length.
+typedef struct bough_rod_place {
+    int segment;
+    double fraction;
+    bough_axial_mass inner; // of the segment's part up to there
+    double bend[27], twist; // `bend` and its result, of bough_rod_sections
+} bough_rod_place;
 
 // A load of the scene on the rod.
 typedef struct bough_section_scene_load {
@@ -34,16 +43,8 @@ typedef struct bough_section_loads {
     bough_axial_mass *mass;         // (n_segment) of whole segments
     double *centre;                 // (n_segment + 1) arc length of the vertices' mass centres [m]
     bough_vec3 *acceleration;       // (n_segment + 1) a − g there, in the body's axes [m/s²]
-    bough_section_load *spread;     // (n_segment + 1) theory (119), per length, in the body's axes
     bough_section_load root, end;   // in the body's axes; end: of bodies and loads on it
 } bough_section_loads;
-
-// A place on a rod: within a segment, at a fraction of its length.
-typedef struct bough_rod_place {
-    int segment;
-    double fraction;
-    bough_axial_mass inner; // of the segment's part up to there
-} bough_rod_place;
 
 // Of a body of fidelity rod.
 bough_section_loads bough_section_loads_create(bough_arena *arena, const bough_simulation *s,
@@ -54,12 +55,15 @@ bool bough_section_loads_evaluate(bough_section_loads *x, double t);
 
 bough_rod_place bough_section_loads_place(const bough_section_loads *x, int segment, double fraction);
 
-// Load of the section at a place, in the section's axes; `axes`: these in the body's.
-bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place,
-                                          bough_mat3 *axes);
+// The left or the right end of a segment, for loads alone.
+bough_rod_place bough_section_loads_end(const bough_section_loads *x, int segment, bool right);
 
-// The moments of a segment, linear over its length, at its two vertices, in the body's axes [N m].
-void bough_section_loads_linear(const bough_section_loads *x, int segment, bough_vec3 moment[2]);
+// Load of the section, in the body's axes.
+bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place);
+
+// The section's axes in the body's, and its rotation vector against the undeformed one.
+bough_mat3 bough_section_loads_axes(const bough_section_loads *x, const bough_rod_place *at,
+                                    bough_vec3 *rotation);
 
 // Position of a vertex [m] and rotation of the section there, in the body's frame.
 bough_vec3 bough_section_loads_position(const bough_section_loads *x, int vertex);

@@ -49,13 +49,11 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     bough_mat3 frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
     if (!bough_section_loads_evaluate(loads, t)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
-        int segment = k < beam->def.n_segment ? k : k - 1;
-        bough_rod_place place = bough_section_loads_place(loads, segment, k - segment);
-        bough_mat3 axes;
-        bough_section_load load = bough_section_loads_at(loads, &place, &axes);
-        axes = bough_mat3_product(frame, axes);
-        bough_v3_store(bough_mat3_mul(axes, load.force), force + 3 * k);
-        bough_v3_store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
+        bool last = k == beam->def.n_segment;
+        bough_rod_place vertex = bough_section_loads_end(loads, last ? k - 1 : k, last);
+        bough_section_load load = bough_section_loads_at(loads, &vertex);
+        bough_v3_store(bough_mat3_mul(frame, load.force), force + 3 * k);
+        bough_v3_store(bough_mat3_mul(frame, load.moment), moment + 3 * k);
     }
 }
 
