@@ -283,10 +283,10 @@ bool bough_cholesky_factor(int n, double *a) {
 bool bough_cholesky_lower(int n, double *a) {
     if (n == 0) return true;
     prepare();
-    if (!finite_matrix(n, a)) return false;
     int info = 0;
     dpotrf_("L", &n, a, &n, &info, 1);
-    return info == 0;
+    // a NaN anywhere enters all later rows
+    return info == 0 && isfinite(a[(size_t)n * (size_t)n - 1]);
 }
 
 // L y = b forwards, Lᵀ x = y backwards.
