@@ -87,8 +87,9 @@ static void run_member(void *data, int k) {
 
 bough_status bough_coupling_each(bough_coupling *c, int level, void (*work)(bough_coupling *c, int member)) {
     member_work w = {c, work};
+    int n = list_level(c, level);
     bough_coupling_clear(c);
-    bough_pool_run(c->pool, list_level(c, level), run_member, &w);
+    bough_pool_run_pairs(c->pool, 0, n, n, run_member, &w);
     return bough_coupling_failure(c);
 }
 

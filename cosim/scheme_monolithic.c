@@ -35,30 +35,42 @@ static void set_argument(const stages *s, int i) {
 static void find_right_side(const stages *s, int i) {
     const int *offset = s->assembly->state_offset + i;
     if (!bough_whole_outputs_first(s->now, i)) set_argument(s, i);
+    bough_pool_await(s->factors->pool, 0);
     bough_whole_rates_of(s->evaluation, s->n_evaluation, i);
     bough_rosenbrock_right_side(s->step, s->stage, offset[0], offset[1]);
 }
 
-// Number of a stage's tasks before those of the leaders. After an odd number of followers an empty task makes
-// the first leader one of the caller's: of two threads it finishes its followers first.
-static int tasks_of_followers(const stages *s) {
-    return 2 * s->assembly->n_follower + s->assembly->n_follower % 2;
+// Outputs that the inputs of other members need. In the first stage F is evaluated at the step's end, too, if
+// the step asks for ∂F/∂t.
+static void begin_rates(stages *s) {
+    const bough_rosenbrock_step *step = s->step;
+    const double *state = s->stage == 0 ? step->y : step->at;
+    for (int i = 0; i < s->assembly->n_member; i++)
+        if (bough_whole_outputs_first(s->now, i)) set_argument(s, i);
+    s->n_evaluation = 0;
+    if (s->stage == 0 && step->drifts) {
+        s->evaluation[s->n_evaluation++] = s->end;
+        bough_whole_begin_rates(s->end, step->t + step->h, state, step->drift);
+    }
+    s->evaluation[s->n_evaluation++] = s->now;
+    bough_whole_begin_rates(s->now, bough_rosenbrock_time(step, s->stage), state, step->u[s->stage]);
 }
 
-// The tasks of a stage: right sides of the followers, their solutions, then the leaders, whose inputs wait
-// for the outputs of all followers. With two tasks for each follower, three followers make the same work for
-// both of two threads.
+// The tasks of a stage: outputs of the leaders, right sides of the followers, their solutions, then the
+// leaders, whose inputs wait for the outputs of all followers.
 static void find_and_solve(void *self, int k) {
-    const stages *s = self;
-    const int *member = s->assembly->by_role, n = s->assembly->n_follower, first = tasks_of_followers(s);
-    if (k < n) {
-        find_right_side(s, member[k]);
-    } else if (k < 2 * n) {
+    stages *s = self;
+    const int *member = s->assembly->by_role, n = s->assembly->n_follower;
+    if (k == 0) {
+        begin_rates(s);
+    } else if (k <= n) {
+        find_right_side(s, member[k - 1]);
+    } else if (k <= 2 * n) {
         bough_pool_await(s->factors->pool, k - n);
-        bough_whole_solve_of(s->factors, member[k - n]);
-    } else if (k >= first) {
-        int leader = member[n + k - first];
-        for (int j = 0; j < n; j++) bough_pool_await(s->factors->pool, j);
+        bough_whole_solve_of(s->factors, member[k - n - 1]);
+    } else {
+        int leader = member[k - n - 1];
+        for (int j = 1; j <= n; j++) bough_pool_await(s->factors->pool, j);
         find_right_side(s, leader);
         bough_whole_solve_of(s->factors, leader);
     }
@@ -72,30 +84,12 @@ static void finish_member(void *self, int k) {
     s->square[i] = bough_rosenbrock_end(s->step, offset[0], offset[1]);
 }
 
-// In the first stage F is evaluated at the step's end, too, if the step asks for ∂F/∂t.
-static void begin_rates(stages *s, const double *state) {
-    const bough_rosenbrock_step *step = s->step;
-    s->n_evaluation = 0;
-    if (s->stage == 0 && step->drifts) {
-        s->evaluation[s->n_evaluation++] = s->end;
-        bough_whole_begin_rates(s->end, step->t + step->h, state, step->drift);
-    }
-    s->evaluation[s->n_evaluation++] = s->now;
-    bough_whole_begin_rates(s->now, bough_rosenbrock_time(step, s->stage), state, step->u[s->stage]);
-}
-
 // One stage of all members. False where a rate is not finite.
 static bool take_stage(stages *s) {
-    const bough_rosenbrock_step *step = s->step;
-    int n_member = s->assembly->n_member;
-    // arguments of the members whose outputs the inputs of others need first
-    for (int i = 0; i < n_member; i++)
-        if (bough_whole_outputs_first(s->now, i)) set_argument(s, i);
-    begin_rates(s, s->stage == 0 ? step->y : step->at);
+    int n_member = s->assembly->n_member, n_follower = s->assembly->n_follower;
     // every member by itself
-    bough_whole_begin_solution(s->factors, step->u[s->stage]);
-    int n_leader = n_member - s->assembly->n_follower;
-    bough_pool_run(s->factors->pool, tasks_of_followers(s) + n_leader, find_and_solve, s);
+    bough_whole_begin_solution(s->factors, s->step->u[s->stage]);
+    bough_pool_run_pairs(s->factors->pool, 1, n_follower, 1 + n_follower + n_member, find_and_solve, s);
     // the interface; the members' responses to it follow with the next stage
     bough_whole_solve_interface(s->factors);
     bough_status status = bough_whole_failure(s->evaluation[0]);
@@ -110,7 +104,8 @@ static double find(void *self, bough_rosenbrock_step *step) {
         if (s->whole->stop && s->whole->stop()) return (double)NAN;
         if (!take_stage(s)) return (double)NAN;
     }
-    bough_pool_run(s->factors->pool, s->assembly->n_member, finish_member, s);
+    const bough_assembly *a = s->assembly;
+    bough_pool_run_pairs(s->factors->pool, 0, a->n_follower, a->n_member, finish_member, s);
     for (int i = 0; i < s->assembly->n_member; i++) sum += s->square[i];
     return sum;
 }

@@ -147,10 +147,6 @@ static void predict_leader(bough_coupling *c, int member) {
     solve(c, member, NULL);
 }
 
-static void prepare_follower(bough_coupling *c, int member) {
-    if (!evaluate(c, member)) bough_coupling_not_finite(c, member);
-}
-
 static void predict_follower(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
@@ -179,23 +175,19 @@ static void choose_tangents(bough_coupling *c) {
     r->span = span;
 }
 
-// Task k: the leaders; what followers do without them; the followers, which wait for both. The second group
-// begins `shift` followers later, so that with one leader each follower stays on the thread on which it
-// advances.
+// Task k: the leaders; what followers do without them; the followers, which wait for both.
 static void predict_member(void *data, int k) {
     bough_coupling *c = data;
     const bough_assembly *a = c->assembly;
     const int *follower = a->by_role, *leader = a->by_role + a->n_follower;
-    int n_follower = a->n_follower, n_leader = a->n_member - n_follower;
-    int shift = n_follower > 0 ? n_leader % n_follower : 0;
-    int place = k - n_leader, last = place - n_follower;
+    int n_leader = a->n_member - a->n_follower, place = k - n_leader, last = place - a->n_follower;
     if (place < 0) {
         predict_leader(c, leader[k]);
     } else if (last < 0) {
-        prepare_follower(c, follower[(place + shift) % n_follower]);
+        if (!evaluate(c, follower[place])) bough_coupling_not_finite(c, follower[place]);
     } else {
         for (int l = 0; l < n_leader; l++) bough_pool_await(c->pool, l);
-        bough_pool_await(c->pool, n_leader + (last + n_follower - shift) % n_follower);
+        bough_pool_await(c->pool, n_leader + last);
         if (bough_is_ok(&c->status[follower[last]])) predict_follower(c, follower[last]);
     }
 }
@@ -210,7 +202,8 @@ static bough_status predict(bough_coupling *c) {
     r->middle = c->t0 + r->gamma;
     // every member with the leaders' inputs held
     bough_coupling_clear(c);
-    bough_pool_run(c->pool, a->n_member + a->n_follower, predict_member, c);
+    int n_follower = a->n_follower, n_leader = a->n_member - n_follower;
+    bough_pool_run_pairs(c->pool, n_leader, n_follower, n_leader + 2 * n_follower, predict_member, c);
     BOUGH_TRY(bough_coupling_failure(c));
     // the interface, theory (56)
     for (int i = 0; i < a->n_member; i++) {

@@ -37,7 +37,7 @@ static bough_status each(bough_whole *whole, int whom, void (*work)(bough_whole 
     const bough_assembly *a = whole->assembly;
     int first = whom == LEADERS ? a->n_follower : 0, last = whom == FOLLOWERS ? a->n_follower : a->n_member;
     member_work w = {whole, a->by_role + first, work};
-    bough_pool_run(whole->pool, last - first, run_member, &w);
+    bough_pool_run_pairs(whole->pool, 0, whom == LEADERS ? 0 : a->n_follower, last - first, run_member, &w);
     return failure_among(whole, first, last);
 }
 
@@ -170,7 +170,8 @@ static void set_point(bough_whole *whole, double t, const double *state, const d
 static bough_status factor_there(bough_whole *whole, double gamma) {
     assert(whole->interface != NULL);
     whole->gamma = gamma;
-    bough_pool_run(whole->pool, whole->assembly->n_member, factor_member, whole);
+    int n = whole->assembly->n_member, n_follower = whole->assembly->n_follower;
+    bough_pool_run_pairs(whole->pool, n - n_follower, n_follower, n, factor_member, whole);
     BOUGH_TRY(bough_whole_failure(whole));
     whole->linearised = true;
     // responses of the followers to the leaders, then the interface
@@ -349,20 +350,6 @@ static bool derivative(void *self, double t, const double *state, const double *
     return bough_is_ok(&status);
 }
 
-static void output(void *self, double t, const double *state, const double *input, double *out) {
-    (void)self, (void)t, (void)state, (void)input, (void)out;
-}
-
-// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
-static void output_tangent(void *self, double t, const double *state, const double *input,
-                           const double *state_rate, const double *input_rate, double *rate) {
-    (void)self, (void)t, (void)state, (void)input, (void)state_rate, (void)input_rate, (void)rate;
-}
-
-static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
-    (void)self, (void)t, (void)state, (void)input, (void)column;
-}
-
 static void *factors(void *self, bough_arena *arena) {
     const bough_whole *whole = self;
     return bough_whole_create(arena, whole->assembly, whole->pool);
@@ -416,7 +403,11 @@ static bool constrain(void *self, double t, double *state) {
 }
 
 static const bough_system_ops operations = {
-    BOUGH_SYSTEM_REQUIRED,
+    .derivative = derivative,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
     .linearise_ahead = linearise_ahead,
     .constrain = constrain,
 };

@@ -29,10 +29,11 @@ struct bough_pool {
     bool open;    // a region is
     bool listing; // a list is in progress; the caller's
     bool crowded; // more threads than processors
-    // the list in progress, written before its number in `list`
+    // the list in progress, written before its number in `list`; a thread that comes late reads the integers
     bough_task task;
     void *data;
-    int first;                                 // index of its first task
+    atomic_int first;                          // index of its first task
+    atomic_int before, bodies;                 // as of bough_pool_run_pairs; 0 of other lists
     _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
     uint64_t list_before;                      // `list` when the region began
     atomic_bool ended;                         // the work of the region has returned
@@ -123,20 +124,26 @@ static void do_task(bough_pool *p, uint64_t list, int k, int self) {
     wake(p, &p->waiting);
 }
 
-// Whose task k is: 0, 1, …, n − 1, n − 1, …, 1, 0, 0, 1, … for n threads.
+// Whose task k is: 0, 1, …, n − 1, n − 1, …, 1, 0, 0, … for n threads, the last body's first; −1: anyone's.
 static int owner(const bough_pool *p, int k) {
-    int place = k % p->n_thread;
-    return k / p->n_thread % 2 == 0 ? place : p->n_thread - 1 - place;
+    int n = p->n_thread, bodies = p->bodies, place = p->first + k - p->before, second = place - bodies;
+    if (bodies > 0) {
+        if (place < 0 || second >= bodies) return 0;
+        if (second >= 0 && second < bodies % n && bodies > n) return -1;
+        place = bodies - 1 - place % bodies;
+    }
+    return place / n % 2 == 0 ? place % n : n - 1 - place % n;
 }
 
 // The caller's time to wait for a task's owner [ns]: none where no other thread has come, so that lists cost
 // no more than on one thread.
 static long time_to_wait(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
 
-// A thread's own tasks, then those of threads that are late.
+// A thread's own tasks and anyone's, then those of threads that are late.
 static void do_list(bough_pool *p, uint64_t list, int self) {
     for (int k = 0; k < count_of(list); k++) {
-        if (owner(p, k) == self) do_task(p, list, k, self);
+        int whose = owner(p, k);
+        if (whose == self || whose < 0) do_task(p, list, k, self);
     }
     if (self > 0 && look(p, steal_time, has_news, list)) return;
     for (int k = 0; k < count_of(list); k++) {
@@ -157,7 +164,7 @@ static void do_lists(bough_pool *p, int self) {
 static void run_portion(bough_pool *p, int first, int n, bough_task task, void *data) {
     p->task = task;
     p->data = data;
-    p->first = first;
+    atomic_store_explicit(&p->first, first, memory_order_relaxed);
     p->n_alone = 0;
     // publish the list: its number last
     uint64_t number = number_of(atomic_load(&p->list)) + 1, list = number << 16 | (uint64_t)n;
@@ -169,13 +176,15 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
     atomic_store(&p->alone, p->n_alone == n);
 }
 
-void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
+void bough_pool_run_pairs(bough_pool *pool, int before, int bodies, int n, bough_task task, void *data) {
     if (!pool || !pool->open || pool->n_thread == 1 || n == 1) {
         for (int k = 0; k < n; k++) task(data, k);
         return;
     }
     assert(omp_get_thread_num() == 0 && !pool->listing); // no task may
     pool->listing = true;
+    atomic_store_explicit(&pool->before, before, memory_order_relaxed);
+    atomic_store_explicit(&pool->bodies, bodies, memory_order_relaxed);
     for (int first = 0; first < n; first += MOST_TASKS) {
         run_portion(pool, first, n - first < MOST_TASKS ? n - first : MOST_TASKS, task, data);
     }

@@ -37,8 +37,17 @@ int bough_pool_threads(const bough_pool *pool);
 // a region of the same pool it is a plain call.
 void bough_pool_region(bough_pool *pool, void (*work)(void *data), void *data);
 
-// Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it.
-void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
+// Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it. The list
+// has two tasks for each body: `before` tasks of the caller, the first tasks, the second ones in the same
+// order, each of which awaits the first, and again tasks of the caller. Both belong to one thread, but the
+// second ones of bodies beyond equally many for each thread belong to whoever comes first: two threads share
+// three bodies evenly.
+void bough_pool_run_pairs(bough_pool *pool, int before, int bodies, int n, bough_task task, void *data);
+
+// The same of a list of single tasks.
+static inline void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
+    bough_pool_run_pairs(pool, 0, 0, n, task, data);
+}
 
 // Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);

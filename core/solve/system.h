@@ -21,7 +21,7 @@ typedef struct bough_system_ops {
     // f: rate (n_state). False when the value is not finite.
     bool (*derivative)(void *self, double t, const double *state, const double *input, double *rate);
 
-    // h: output (n_output).
+    // h: output (n_output). NULL, as the next two, of a system without ports.
     void (*output)(void *self, double t, const double *state, const double *input, double *output);
 
     // ∂h/∂y·state_rate + ∂h/∂u·input_rate: output_rate (n_output). Either rate may be NULL for 0.

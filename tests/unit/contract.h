@@ -214,6 +214,7 @@ static inline int contract_result_size(const bough_system *s, int which) {
 static inline void contract_result(const bough_system *s, contract_point at, double gamma, int which,
                                    void *factors, double *x) {
     const bough_system_ops *ops = s->ops;
+    if (contract_result_size(s, which) == 0) return;
     double *dy = contract_doubles(s->n_state), *du = contract_doubles(s->n_input);
     contract_direction(s->scale, s->n_state, 1, dy);
     contract_direction(NULL, s->n_input, 1, du);
@@ -221,9 +222,7 @@ static inline void contract_result(const bough_system *s, contract_point at, dou
     case 0: assert_true(ops->derivative(s->self, at.t, at.state, at.input, x)); break;
     case 1: ops->output(s->self, at.t, at.state, at.input, x); break;
     case 2: ops->output_tangent(s->self, at.t, at.state, at.input, dy, du, x); break;
-    case 3:
-        if (ops->output_drift) ops->output_drift(s->self, at.t, at.state, at.input, x);
-        break;
+    case 3: ops->output_drift(s->self, at.t, at.state, at.input, x); break;
     case 4:
         assert_true(ops->linearise(s->self, at.t, at.state, at.input, factors));
         assert_true(ops->factor(s->self, factors, gamma));
@@ -293,8 +292,8 @@ static inline void contract_evaluate_together(const bough_system *s, contract_po
 static inline void contract_check_system(const bough_system *s, contract_point at, double gamma) {
     contract_no_memory(s, at, gamma);
     contract_evaluate_together(s, at);
-    contract_output_tangent(s, at);
-    contract_input_columns(s, at);
+    if (s->n_output > 0) contract_output_tangent(s, at);
+    if (s->n_input > 0) contract_input_columns(s, at);
     contract_newton(s, at, gamma);
 }
 

@@ -188,8 +188,7 @@ typedef struct interval {
     double start, span; // [s]
 } interval;
 
-// An evaluation of the rotor. There are two tasks for each blade, so that two threads share three blades
-// evenly.
+// An evaluation of the rotor.
 typedef struct evaluation {
     bough_aero_link *link;
     const bough_rotor_motion *motion;
@@ -236,9 +235,9 @@ static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_m
     l->found = to;
     e.data->skips_slopes = next == NULL; // only signals need them
     e.data->same_motion = move == NULL;
-    bough_pool_run(pool, 2 * l->n_blade, approach_blade, &e);
+    bough_pool_run_pairs(pool, 0, l->n_blade, 2 * l->n_blade, approach_blade, &e);
     bough_rotor_survey(l->rotor, e.motion, e.data);
-    bough_pool_run(pool, next ? 2 * l->n_blade : l->n_blade, load_blade, &e);
+    bough_pool_run_pairs(pool, 0, l->n_blade, next ? 2 * l->n_blade : l->n_blade, load_blade, &e);
     bough_rotor_conclude(l->rotor, e.motion, e.data);
 }
 

@@ -61,7 +61,7 @@ static void add_to_the_one_before(void *data, int k) {
 static void add_up(void *data) {
     list *l = data;
     for (int repeat = 0; repeat < 3; repeat++) {
-        bough_pool_run(l->pool, MOST, add_to_the_one_before, l);
+        bough_pool_run_pairs(l->pool, repeat, repeat * 7, MOST, add_to_the_one_before, l);
         for (int k = 0; k < MOST; k++) assert_int_equal(l->sum[k], k * (k + 1) / 2);
     }
 }
