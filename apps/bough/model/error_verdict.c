@@ -69,6 +69,7 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 // -- what counts ----------------------------------------------------------------------------------
 
 static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is always rounding
+static const double least_load = 1e-9;    // of the largest force or moment, in SI units: likewise
 
 static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     double largest = 0;
@@ -76,6 +77,15 @@ static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
         const bough_channel *channel = &c->channels->channel[i];
         if (channel->kind == kind && !channel->sampled)
             largest = fmax(largest, channel->si * own_range(c, i));
+    }
+    return largest;
+}
+
+static double largest_load(const bough_companion *c) {
+    double largest = 0;
+    for (int i = 0; i < c->channels->count; i++) {
+        const bough_channel *channel = &c->channels->channel[i];
+        if (is_force(channel)) largest = larger(largest, channel->si * largest_value(c, i));
     }
     return largest;
 }
@@ -107,6 +117,7 @@ bool bough_error_counts(const bough_companion *c, int i) {
     double moves = channel->si * fmax(bough_error_range(c, i), c->error[i]);
     bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * c->motion, least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
+    if (is_force(channel) && moves <= least_load * largest_load(c)) return false;
     return moving && moves >= least_share * kind_range(c, channel->kind);
 }
 

@@ -21,7 +21,8 @@ static int worst_in(int n, const row *rows, char words[BOUGH_ERROR_SIZE]) {
         c.high[i] = c.other_high[i] = rows[i].range;
         c.error[i] = rows[i].error;
     }
-    int worst = bough_error_verdict_of(&c, true, c.error).channel;
+    bool motion = strcmp(rows[0].unit, "kN") != 0;
+    int worst = bough_error_verdict_of(&c, motion, c.error).channel;
     if (worst >= 0) bough_error_size(&c, worst, words);
     bough_arena_destroy(arena);
     return worst;
@@ -148,6 +149,8 @@ TEST(what_hardly_moves_does_not_count) {
         {2, -1, {{"TipDxb1", "m", 4e-13, 1e-14}, {"TwstDefl1", "deg", 4e-16, 3e-16}}},
         {2, 1, {{"one", "m", 1, .01}, {"other", "m", 2e-3, 1e-3}}},
         {2, 0, {{"one", "m", 1, .01}, {"other", "m", 5e-4, 4e-4}}},
+        {2, 0, {{"RootFzb1", "kN", .07, 2e-4}, {"RootMxb1", "kN-m", 3e-14, 3e-14}}},
+        {2, 1, {{"RootFzb1", "kN", .07, 2e-4}, {"RootMxb1", "kN-m", 3e-7, 3e-7}}},
     };
     char words[BOUGH_ERROR_SIZE];
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
