@@ -48,8 +48,8 @@ enum { FINE, RIGID, WAYS };
 // Inertia of one segment at its two vertices.
 typedef struct segment_inertia {
     bough_vertex_inertia side[WAYS][2];
-    double shift[2];             // first moments of the fine way along the segment [kg m]
     bough_axial_mass left[WAYS]; // at the left vertex
+    double right;                // first moment of the fine way along the segment at the right one [kg m]
     bool rigid;                  // the way taken
 } segment_inertia;
 
@@ -184,15 +184,14 @@ static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod
     bough_section_integrate(a, from, to, add_mass, &c);
     double h = to - from, bend = c.curvature / h;
     segment_inertia *s = &c.sum;
-    s->shift[0] = 0.5 * bend + gain.moment.z;
-    s->shift[1] = h * gain.mass - s->shift[0];
     add_end_terms(&c);
     add_gain(&c, gain);
-    const double moment[2] = {s->shift[0], bend},
-                 second[2] = {h * gain.moment.z - h * h * gain.mass / 2, c.second};
+    const double moment[WAYS] = {0.5 * bend + gain.moment.z, bend},
+                 second[WAYS] = {h * gain.moment.z - h * h * gain.mass / 2, c.second};
+    s->right = h * gain.mass - moment[FINE];
     bough_vec3 chord = bough_scale(1 / h, bough_sub(def->position[k + 1], def->position[k]));
     chord = bough_mat3_tmul(bough_rotation_matrix(def->rotation[k]), chord);
-    for (int way = 0; way < 2; way++) {
+    for (int way = 0; way < WAYS; way++) {
         const bough_vertex_inertia *v = &s->side[way][0];
         bough_vec3 offset = bough_axpy(-moment[way], chord, v->moment);
         s->left[way] = (bough_axial_mass){v->mass, moment[way], second[way], offset};
@@ -262,8 +261,8 @@ static void sum_vertices(const bough_rod_def *def, const segment_inertia *segmen
         vertex[k].outer = segment[k].left[segment[k].rigid];
     }
     for (int i = 0; i <= n && n > 1; i++) {
-        double shift = (i < n && !segment[i].rigid ? segment[i].shift[0] : 0) +
-                       (i > 0 && !segment[i - 1].rigid ? segment[i - 1].shift[1] : 0);
+        double shift = (i < n && !segment[i].rigid ? segment[i].left[FINE].moment : 0) +
+                       (i > 0 && !segment[i - 1].rigid ? segment[i - 1].right : 0);
         double spread = shift == 0 ? 0 : lack(&vertex[i], shift);
         if (spread > 0) add_spread(def, i, spread, vertex);
     }
