@@ -3,10 +3,10 @@
 // clang-format off
 // A channel without OpenFAST's name, and with it; the same as component i of a vector, from 1. Three channels along or
 // about x, y and z, with small letters in their names and with capitals; `text` and `after` enclose the axis.
-#define OURS(name, unit, text) {name, unit, text, NULL, 0}
-#define SAME(name, unit, text) {name, unit, text, name, 0}
-#define OURS_OF(i, name, unit, text) {name, unit, text, NULL, i}
-#define SAME_OF(i, name, unit, text) {name, unit, text, name, i}
+#define OURS(name, unit, text) {name, unit, text, NULL, 0, 0}
+#define SAME(name, unit, text) {name, unit, text, name, 0, 0}
+#define OURS_OF(i, name, unit, text) {name, unit, text, NULL, i, 0}
+#define SAME_OF(i, name, unit, text) {name, unit, text, name, i, 0}
 #define XYZ(name, end, unit, text, after)                                                          \
     OURS_OF(1, name "x" end, unit, text "x" after), OURS_OF(2, name "y" end, unit, text "y" after), \
     OURS_OF(3, name "z" end, unit, text "z" after)
@@ -87,7 +87,7 @@ static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_BLADE] = {"Blade of a turbine", numbered, ROWS(
         SAME_OF(1, "OoPDefl{a}", "m", "displacement of the tip along x before the pitch: downwind"),
         SAME_OF(2, "IPDefl{a}", "m", "displacement of the tip along y before the pitch"),
-        {"TwstDefl{a}", "deg", "third component of the rotation vector of the tip's section, blade axes", "TipRDzb{a}", 0},
+        {"TwstDefl{a}", "deg", "third component of the rotation vector of the tip's section, blade axes", "TipRDzb{a}", 0, 0},
         SAME_XYZ("TipD", "b{a}", "m", "displacement of the tip along the blade's ", ""),
         SAME_XYZ("RootF", "b{a}", "kN", "force of the blade on the hub along the blade's ", ""),
         SAME_OF(1, "RootMxb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's x: edgewise"),
@@ -136,7 +136,7 @@ static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
         SAME_OF(2, "Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
         SAME_OF(3, "Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
         SAME_XYZ("RtVAvg", "h", "m/s", "wind relative to the blades, mean over all blade elements, with the tower's influence, along the hub's ", ""),
-        SAME("RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh; 0 in still air")), .sampled = BOUGH_BY_AIR},
+        {"RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh; 0 in still air", "RtTSR", 0, 3}), .sampled = BOUGH_BY_AIR},
     [BOUGH_CHANNELS_ELEMENT] = {"Blade element that aero.nodes names",
         "{a}: number of the blade; {b}: number of the element, with three digits", ROWS(
         SAME("AB{a}N{b}VRel", "m/s", "speed of the air relative to the element"),
@@ -180,10 +180,11 @@ static void fill(const char *form, const char *a, const char *b, char *text, siz
 void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a, const char *b) {
     const bough_channel_family *family = &families[part];
     for (int k = 0; k < family->n; k++) {
+        const bough_channel_row *row = &family->row[k];
         char name[2 * BOUGH_CHANNEL_NAME];
-        fill(family->row[k].name, a, b, name, sizeof name);
-        bough_channels_add(list, family->row[k].unit, "%s", name);
-        bough_channels_describe(list, family->row[k].meaning, family->row[k].component, family->sampled);
+        fill(row->name, a, b, name, sizeof name);
+        bough_channels_add(list, row->unit, "%s", name);
+        bough_channels_describe(list, row->meaning, row->component, row->divisor, family->sampled);
     }
 }
 

@@ -10,6 +10,7 @@ typedef struct bough_channel_row {
     const char *meaning;  // axes and sign
     const char *openfast; // its name there, NULL: it has none
     int component;        // 1, 2 or 3 of a vector whose components are adjacent; 0: a scalar
+    int divisor;          // a quotient: its divisor is so many channels before it; 0: it is none
 } bough_channel_row;
 
 // The channels of a part of a scene.

@@ -4,6 +4,51 @@
 #include "cosim/master.h"
 #include "cosim/scheme.h"
 
+// -- ratio of the errors --
+
+static bool is_one_system(const bough_scene *scene) {
+    return bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
+}
+
+// Whether the integrator of the whole or of a body takes fixed steps, whose error the companion's steps by
+// tolerance do not share. Fixed steps of its own would end at the corners of loads, as the run's do, and be
+// as short.
+static bool has_fixed_steps(const bough_scene *scene) {
+    if (is_one_system(scene)) return scene->simulation.master.solver == BOUGH_GENERALIZED_ALPHA;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_body *b = &scene->body[i];
+        if (bough_scene_has_mesh(b) && bough_scene_micro(scene, b)->solver == BOUGH_GENERALIZED_ALPHA)
+            return true;
+    }
+    return false;
+}
+
+static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
+
+bool bough_coarser_steps_alone(const bough_scene *scene) {
+    static const double tight = 1e-6;
+    bool mesh = false;
+    for (int i = 0; i < scene->n_body; i++) mesh = mesh || bough_scene_has_mesh(&scene->body[i]);
+    bool sampled = scene->aero.node || scene->control.node;
+    return is_one_system(scene) && scene->simulation.master.rtol < tight && !mesh && !sampled;
+}
+
+// All bodies as one system: a quarter in air whose loads follow the motion, as for an order between 2 and 3;
+// two fifths without air, where vibrations do not decay and their phases and amplitudes err at a lower order;
+// three tenths for rigid bodies, beside a companion of a still larger tolerance. A coupling scheme: the
+// companion has no error of coupling, so that this error is the whole difference. It is taken as a whole for
+// fixed steps and for a scheme that is explicit, repeats steps or is of order 1, as any is across a jump
+// within a macro step; otherwise by half, as steps and mesh are a part of the difference.
+static double usual_ratio(const bough_scene *scene) {
+    const bough_scene_coupling *x = &scene->simulation.coupling;
+    const bough_scheme *scheme = bough_scheme_at(x->scheme);
+    if (has_fixed_steps(scene)) return 1;
+    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.3 : 0.4;
+    bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
+                 bough_scheme_error_order(scheme, &x->options) == 1;
+    return whole ? 1 : 0.5;
+}
+
 // -- mesh -----------------------------------------------------------------------------------------
 
 // A rod that carries bodies has an inner vertex.
@@ -36,10 +81,10 @@ enum { LEAST_IN_AIR = 10, SOME_SEGMENTS = 14 };
 
 static int finer_number(int n) { return 2 * n > LEAST_SEGMENTS ? 2 * n : LEAST_SEGMENTS; }
 
-// About half of n segments. A rod of few segments, or one that cannot have many fewer, gets at least twice as
-// many: the difference measures the error as well.
-static int other_number(int n, int least) {
-    int half = (n + 1) / 2, fewer = half > least ? half : least;
+// About half of n segments, or seven tenths where the whole difference is the error. A rod of few segments,
+// or one that cannot have many fewer, gets at least twice as many: the difference measures the error as well.
+static int other_number(int n, int least, bool whole) {
+    int part = whole ? 7 * n / 10 : (n + 1) / 2, fewer = part > least ? part : least;
     return n >= FEW_SEGMENTS && 4 * fewer <= 3 * n ? fewer : finer_number(n);
 }
 
@@ -140,13 +185,14 @@ static int finer_segments(const bough_scene *scene, int body) {
     return (n + pieces - 1) / pieces * pieces;
 }
 
-// What a rod gets whatever the others have.
-static int own_segments(const bough_scene *scene, int body) {
+// What a rod gets whatever the others have. `whole`: the whole difference is the error.
+static int own_segments(const bough_scene *scene, int body, bool whole) {
     int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
     bool modal = blade ? has_modal_blades(scene) : is_modal(scene, body);
     if (modal || has_short_pulses(scene) || is_rope(scene, body)) return finer_segments(scene, body);
-    return other_number(n, blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR ? LEAST_IN_AIR : least);
+    if (blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR) least = LEAST_IN_AIR;
+    return other_number(n, least, whole);
 }
 
 // The largest number of segments among the rods that get more; 0: none does.
@@ -154,7 +200,7 @@ static int most_refined(const bough_scene *scene) {
     int most = 0;
     for (int i = 0; i < scene->n_body; i++) {
         int n = scene->body[i].rod.n_segment;
-        if (bough_scene_has_mesh(&scene->body[i]) && n > most && own_segments(scene, i) > n) most = n;
+        if (bough_scene_has_mesh(&scene->body[i]) && n > most && own_segments(scene, i, false) > n) most = n;
     }
     return most;
 }
@@ -165,56 +211,13 @@ static bool some_finer(const bough_scene *scene) { return most_refined(scene) > 
 // of one size: with up to BESIDE times as many as a refined rod has it is refined too.
 enum { BESIDE = 3 };
 
-static void change_segments(const bough_scene *scene, bough_scene *to) {
+static void change_segments(const bough_scene *scene, bool whole, bough_scene *to) {
     int most = BESIDE * most_refined(scene);
     for (int i = 0; i < scene->n_body; i++) {
         if (!scene->body[i].rod.node) continue;
         bool beside = scene->body[i].rod.n_segment <= most;
-        to->body[i].rod.n_segment = beside ? finer_segments(scene, i) : own_segments(scene, i);
+        to->body[i].rod.n_segment = beside ? finer_segments(scene, i) : own_segments(scene, i, whole);
     }
-}
-
-static bool is_one_system(const bough_scene *scene) {
-    return bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
-}
-
-// Whether the integrator of the whole or of a body takes fixed steps, whose error the companion's steps by
-// tolerance do not share. Fixed steps of its own would end at the corners of loads, as the run's do, and be
-// as short.
-static bool has_fixed_steps(const bough_scene *scene) {
-    if (is_one_system(scene)) return scene->simulation.master.solver == BOUGH_GENERALIZED_ALPHA;
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_scene_body *b = &scene->body[i];
-        if (bough_scene_has_mesh(b) && bough_scene_micro(scene, b)->solver == BOUGH_GENERALIZED_ALPHA)
-            return true;
-    }
-    return false;
-}
-
-static bool holds_loads(const bough_scene *scene) { return scene->aero.hold == BOUGH_SCENE_CONSTANT; }
-
-bool bough_coarser_steps_alone(const bough_scene *scene) {
-    static const double tight = 1e-6;
-    bool mesh = false;
-    for (int i = 0; i < scene->n_body; i++) mesh = mesh || bough_scene_has_mesh(&scene->body[i]);
-    bool sampled = scene->aero.node || scene->control.node;
-    return is_one_system(scene) && scene->simulation.master.rtol < tight && !mesh && !sampled;
-}
-
-// All bodies as one system: a quarter in air whose loads follow the motion, as for an order between 2 and 3;
-// two fifths without air, where vibrations do not decay and their phases and amplitudes err at a lower order;
-// three tenths for rigid bodies, beside a companion of a still larger tolerance. A coupling scheme: the
-// companion has no error of coupling, so that this error is the whole difference. It is taken as a whole for
-// fixed steps and for a scheme that is explicit, repeats steps or is of order 1, as any is across a jump
-// within a macro step; otherwise by half, as steps and mesh are a part of the difference.
-static double usual_ratio(const bough_scene *scene) {
-    const bough_scene_coupling *x = &scene->simulation.coupling;
-    const bough_scheme *scheme = bough_scheme_at(x->scheme);
-    if (has_fixed_steps(scene)) return 1;
-    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.3 : 0.4;
-    bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
-                 bough_scheme_error_order(scheme, &x->options) == 1;
-    return whole ? 1 : 0.5;
 }
 
 // At order 2 the error of n segments is 1/(r² − 1) of the difference to n/r segments; beside a finer mesh it
@@ -433,7 +436,9 @@ static void shorten_steps(bough_scene *to, double tighter, double least_rtol) {
 bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, int parts) {
     bough_scene *to = bough_scene_copy(arena, scene);
     copy_loads(arena, scene, to);
-    if (parts & BOUGH_COARSER_MESH) change_segments(scene, to);
+    // a copy for an analysis of the mesh alone has neither steps nor a coupling
+    bool whole = parts != BOUGH_COARSER_MESH && usual_ratio(scene) == 1;
+    if (parts & BOUGH_COARSER_MESH) change_segments(scene, whole, to);
     if (parts & BOUGH_COARSER_AIR) change_rate(scene, parts & BOUGH_COARSER_MESH && some_finer(scene), to);
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(scene, to);
     if (parts & BOUGH_FINER_TIME) shorten_steps(to, 0.1, 0);

@@ -94,11 +94,12 @@ bool bough_companion_due(const bough_companion *c) {
            !bough_master_done(c->coarser.simulation->master);
 }
 
-// Whether a step of the run ends, too, where the companion is.
+// Whether the companion is where a macro step of the run ends. Between these, at corners of loads and
+// motions, the run shows no values.
 static bool meets_run(const bough_companion *c) {
     const bough_master *m = c->coarser.simulation->master;
     double step = c->run->scene->simulation.macro_step;
-    return m->at_event || bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
+    return bough_master_done(m) || fabs(remainder(m->time, step)) < 1e-6 * step;
 }
 
 bool bough_companion_air_sampled(const bough_simulation *s) {
@@ -190,22 +191,30 @@ static double ratio_of(const bough_companion *c, const bough_channel *channel, d
     return follows ? fmax(ratio, least_ratio_of_force) : ratio;
 }
 
-// The length of the vector that the channel is a component of.
-static double length_of(const bough_companion *c, int i, const double *value) {
+// The length of a vector's components from the channel `first` on.
+static double length_from(const bough_companion *c, int first, const double *value) {
     const bough_channel *list = c->channels->channel;
     double square = 0;
-    for (int k = list[i].vector; k < c->channels->count && list[k].vector == list[i].vector; k++)
+    for (int k = first; k < c->channels->count && list[k].vector == list[first].vector; k++)
         square += value[k] * value[k];
     return sqrt(square);
 }
 
+static double change_from(const bough_companion *c, int first) {
+    return fabs(length_from(c, first, c->value) - length_from(c, first, c->before));
+}
+
 // Change of a channel since the last comparison. In rotating axes the components of a vector change without a
-// new sample; they count at most by the change of the vector's length.
+// new sample; they count at most by the change of the vector's length, and those normal to x, about which a
+// rotor turns, at most by the change of their own.
 static double change_of(const bough_companion *c, int i) {
     const bough_channel *list = c->channels->channel;
+    int x = list[i].vector;
     double change = fabs(bough_channel_difference(&list[i], c->value[i], c->before[i]));
-    bool component = list[i].vector != i || (i + 1 < c->channels->count && list[i + 1].vector == i);
-    return component ? fmin(change, fabs(length_of(c, i, c->value) - length_of(c, i, c->before))) : change;
+    bool component = x != i || (i + 1 < c->channels->count && list[i + 1].vector == i);
+    if (!component) return change;
+    change = fmin(change, change_from(c, x));
+    return x == i ? change : fmin(change, change_from(c, x + 1));
 }
 
 // Error of a sampled channel just before the next sample: both solutions may hold it during the same change.
@@ -214,6 +223,12 @@ static double stale(const bough_companion *c, int i) {
     const bough_channel *channel = &c->channels->channel[i];
     bool held = channel->sampled == BOUGH_BY_AIR && c->compared > 1 && c->value[i] != c->coarser.value[i];
     return held ? c->ratio_held * change_of(c, i) : 0;
+}
+
+// Whether the channel is a quotient whose divisor may pass zero within its error: it may have any value.
+static bool may_be_singular(const bough_companion *c, int i) {
+    int divisor = i - c->channels->channel[i].divisor;
+    return divisor != i && c->error[divisor] > fabs(c->value[divisor]) / 2;
 }
 
 // Whether an error is noticeable and more than a quarter of the channel's largest so far; not in a scene at
@@ -383,12 +398,11 @@ static void pass_jumps(bough_companion *c) {
 }
 
 static void compare(bough_companion *c) {
-    // of two rates the lower one holds its samples longer; at an event, between two macro steps, the run does
+    // of two rates the lower one holds its samples longer
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     const bough_companion_row *row = &c->row[c->present];
-    bool at_event = c->run->master->at_event;
-    const bool held[] = {[BOUGH_BY_AIR] = rarer ? !row->air_sampled : at_event,
-                         [BOUGH_BY_CONTROL] = rarer ? !row->sampled : at_event};
+    const bool held[] = {
+        [BOUGH_BY_AIR] = rarer && !row->air_sampled, [BOUGH_BY_CONTROL] = rarer && !row->sampled};
     bool resolved = missed_air(c->run) <= most_missed;
     pass_jumps(c);
     // steps of any length meet a contact at a chance time, so that both solutions err alike
@@ -405,6 +419,7 @@ static void compare(bough_companion *c) {
                        fabs(bough_channel_difference(channel, c->value[i], c->coarser.value[i]));
         double late = stale(c, i);
         error = error > late ? error : late;
+        if (may_be_singular(c, i)) error = HUGE_VAL;
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
         if (bough_error_is_motion(channel) && error > largest * (c->high[i] - c->low[i]))
             largest = error / (c->high[i] - c->low[i]);

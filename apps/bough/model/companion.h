@@ -15,8 +15,10 @@
 
 // In what the copy is coarser or finer: a set of these.
 enum {
-    BOUGH_COARSER_MESH = 1, // half the segments of each rod, or more where it has few
-    BOUGH_COARSER_AIR = 2,  // half the aerodynamic sampling rate
+    // Half the segments of each rod, seven tenths where the whole difference is the error, or more where it
+    // has few.
+    BOUGH_COARSER_MESH = 1,
+    BOUGH_COARSER_AIR = 2, // half the aerodynamic sampling rate
     // Twice the macro step and the longest step, ten times the tolerance (twelve beside a finer mesh; 1.5 and
     // 3 times beside an explicit coupling; of rigid bodies four times the macro step, thirty times a
     // tight tolerance); all bodies as one system, without the error of a coupling.

@@ -100,12 +100,13 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     list->group[list->group_count - 1].count++;
 }
 
-void bough_channels_describe(bough_channels *list, const char *meaning, int component,
+void bough_channels_describe(bough_channels *list, const char *meaning, int component, int divisor,
                              bough_sampling sampled) {
     if (!bough_is_ok(&list->status)) return;
     bough_channel *channel = &list->channel[list->count - 1];
     if (component > 1) channel->vector = list->count - component;
     channel->meaning = meaning;
+    channel->divisor = divisor;
     channel->sampled = sampled;
 }
 

@@ -30,6 +30,7 @@ typedef struct bough_channel {
     double turn;         // of an angle: a whole turn in its unit; else 0
     bool load;           // a force or moment, also per length
     int vector;          // the first channel of the vector that it is a component of; its own index: a scalar
+    int divisor;         // a quotient: its divisor is so many channels before it; 0: it is none
     bough_sampling sampled; // by what; where the values are known at samples only
 } bough_channel;
 
@@ -71,8 +72,9 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     __attribute__((format(printf, 3, 4)));
 
 // Describes the channel added last: its meaning (not copied), which component of a vector it is (1, 2, 3; 0:
-// a scalar), and whether its values belong to the last sample of the air or the control.
-void bough_channels_describe(bough_channels *list, const char *meaning, int component,
+// a scalar), how many channels before it its divisor is (0: it is no quotient), and whether its values belong
+// to the last sample of the air or the control.
+void bough_channels_describe(bough_channels *list, const char *meaning, int component, int divisor,
                              bough_sampling sampled);
 
 // The index of the channel with this name, −1 if there is none.

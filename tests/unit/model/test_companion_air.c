@@ -140,6 +140,29 @@ TEST(a_held_sample_errs_by_its_age) {
     }
 }
 
+// Normal to a turning shaft, in the hub's axes, a held wind changes with the angle, which is no error: that is
+// the change of its part normal to the shaft, by the tilt of 5 deg.
+TEST(a_held_vector_errs_by_less_than_its_components_turn) {
+    outcome *o = run_for("apps/turbine/runup-stages.yaml", 51,
+                         sets_of("simulation.duration=1.02 s", "simulation.output.from=0.8 s",
+                                 "simulation.macro_step=5 ms", "bodies[hub].joint.speed=30 rpm",
+                                 "bodies[3-5].fidelity=rigid", TABLE("[0, 1.02]", "[6, 12]")));
+    double error = o->error[find(o, "RtVAvgzh")], change = 6 / 1.02 * 15e-3 * sin(5 * BOUGH_DEGREE);
+    print_message("error %.2g m/s, held %.2g\n", error, change);
+    check_near(error, change, 0, 1e-3);
+    free(o);
+}
+
+// Where the wind nearly ceases the rotor's flow may pass zero within its error, and the tip-speed ratio is not
+// known.
+TEST(a_quotient_by_what_may_vanish_is_not_known) {
+    outcome *o = run_for("apps/turbine/runup-stages.yaml", 51,
+                         sets_of("simulation.duration=1.02 s", TABLE("[0, 0.5, 0.505]", "[12, 12, 0.2]")));
+    assert_true(isnan(o->error[find(o, "RtTSR")]));
+    assert_true(isfinite(o->error[find(o, "RtVAvgxh")]));
+    free(o);
+}
+
 // A jump beside a sample is half a sample late, as it is in the companion's longer one, or nearly one sample
 // where loads are held: in both solutions from the same sample on if it were not delayed in the companion.
 TEST(a_jump_of_the_air_has_an_error) {
