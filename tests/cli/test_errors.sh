@@ -124,9 +124,8 @@ bodies:
 END
 run 3 "cause: the coupling or the sub-solvers' steps; try scheme: monolithic" heavy.yaml
 
-# Longer steps struggle at its singular positions: a further run ends with what it may cost, another finds the cause.
+# At its singular positions IDA is given up before its last step, and longer steps pass over them.
 run 3 "cause: the integrator's steps" "$source/tests/data/scenes/parallelogram.yaml"
-grep -q 'further runs took more than 2 times the work' out/summary.json || fail 'the work of a further run'
 
 # All speeds of a driven parallelogram are constant: an error of a millionth of them is none of their range.
 cat >parallelogram.yaml <<'END'

@@ -148,15 +148,17 @@ static bool has_short_pulses(const bough_scene *scene) {
     return found;
 }
 
-// The largest speed at which a revolute joint starts, or to which it is driven [rad/s].
+// The largest angular speed at which a joint starts, or to which a revolute one is driven [rad/s].
 static double fastest_turn(const bough_scene *scene) {
     double fastest = 0;
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_joint *joint = &scene->body[i].joint;
         const bough_motion_def *given = &joint->motion[0].def;
-        if (joint->kind != BOUGH_JOINT_REVOLUTE) continue;
-        fastest = fmax(fastest, fabs(joint->speeds[0]));
-        if (given->given && given->speed) fastest = fmax(fastest, fmax(fabs(given->from), fabs(given->to)));
+        bough_joint any = {
+            (bough_joint_kind)joint->kind, bough_transform_identity(), {1, 0, 0}, {0, 1, 0}}; // of any axes
+        fastest = fmax(fastest, bough_norm(bough_joint_twist(&any, joint->speeds).angular));
+        if (joint->kind == BOUGH_JOINT_REVOLUTE && given->given && given->speed)
+            fastest = fmax(fastest, fmax(fabs(given->from), fabs(given->to)));
     }
     return fastest;
 }
@@ -245,7 +247,9 @@ typedef struct looser {
     double rtol, step, macro_step;
 } looser;
 
-static const double loosest = 0.02; // tolerance
+static const double loosest = 0.02;      // tolerance
+static const double tight_enough = 1e-5; // beside fixed steps, whose tolerance says nothing of their error
+static const double loosest_beside_mesh = 2e-3; // of a finer mesh, whose vibrations it has to resolve
 
 // Where the run's error is taken as the whole difference, the steps of the companion must err little: up to
 // twice as much as the run beside an explicit coupling; a few times as much beside a finer mesh, which would
@@ -255,8 +259,8 @@ static const double loosest = 0.02; // tolerance
 // times as long.
 static looser looser_of(const bough_scene *scene) {
     double beside_mesh = fmax(12, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
-    if (some_finer(scene)) return (looser){beside_mesh, 2, 2};
     if (usual_ratio(scene) == 1) return (looser){3, 1.5, 2};
+    if (some_finer(scene)) return (looser){beside_mesh, 2, 2};
     return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4} : (looser){10, 2, 2};
 }
 
@@ -404,7 +408,9 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     }
     looser by = looser_of(scene);
     if (bough_coarser_steps_alone(scene) && bough_scene_suits_radau(scene)) x->master.solver = BOUGH_RADAU5;
-    x->master.rtol = fmax(x->master.rtol, fmin(by.rtol * x->master.rtol, loosest));
+    double most = some_finer(scene) ? loosest_beside_mesh : loosest;
+    double least = has_fixed_steps(scene) ? tight_enough : x->master.rtol;
+    x->master.rtol = fmax(least, fmin(by.rtol * x->master.rtol, most));
     x->master.step *= by.step;
     if (x->master.step == 0 && by.step < by.macro_step) x->master.step = by.step * x->macro_step;
     x->master.coarse = true;
