@@ -67,10 +67,10 @@ typedef struct maker {
     double *amplitude;   // (3 × (n_wave + 1)) of a wave's complex amplitude, half the wave's
     int *order;          // (n_point) points from the middle outwards
     float *mixed;        // (n_coherent × n_point × 2) complex amplitudes; the box has 16 bits
-    double *wave;        // (2 × n_point) one wave of all points in `order`, real parts before imaginary ones
-    double *factor;      // (n_point × n_point) column-major
+    float *wave;         // (2 × n_point) one wave of all points in `order`, real parts before imaginary ones
+    float *factor;       // (n_point × n_point) column-major
     double *distance;    // (points × points) by the distances in steps of the grid [m]
-    double *table;       // (points × points) coherence, likewise
+    float *table;        // (points × points) coherence, likewise
     uint16_t *pair;      // (n_point × n_point), lower triangle of columns in `order`: entry of the tables
     int16_t *series;     // (BATCH × 3 × n_time)
     // x_k = A₀ + Σ 2 Re(A_m e^{2πi m k/n}) over m = 1 … n/2 − 1, with the amplitude n/2 once, by FFTW:
@@ -147,7 +147,7 @@ static void set_distances(maker *m) {
 static void fill_coherence(maker *m, double f) {
     for (int k = 0; k < m->n_point; k++) {
         double coherence = bough_turbulence_coherence(m->def, m->distance[k], f);
-        m->table[k] = coherence > DBL_EPSILON ? coherence : 0;
+        m->table[k] = coherence > (double)FLT_EPSILON ? (float)coherence : 0;
     }
     for (int j = 0; j < m->n_point; j++) {
         size_t column = (size_t)j * (size_t)m->n_point;
@@ -155,15 +155,15 @@ static void fill_coherence(maker *m, double f) {
     }
 }
 
-// theory (96): the amplitudes of all points at one wave, L e^{iφ}.
+// theory (96): the amplitudes of all points at one wave, L e^{iφ}. In single precision, for a box of 16 bits.
 static void mix_points(maker *m, int wave) {
     int n = m->n_point;
-    double *restrict real = m->wave, *restrict imaginary = m->wave + n;
+    float *restrict real = m->wave, *restrict imaginary = m->wave + n;
     memset(m->wave, 0, 2 * (size_t)n * sizeof *m->wave);
     for (int j = 0; j < n; j++) {
         sine_cosine w = random_wave(random_stream(m, 0, m->order[j]), wave);
-        double re = m->amplitude[wave] * w.cosine, im = m->amplitude[wave] * w.sine;
-        const double *restrict column = m->factor + (size_t)j * (size_t)n;
+        float re = (float)(m->amplitude[wave] * w.cosine), im = (float)(m->amplitude[wave] * w.sine);
+        const float *restrict column = m->factor + (size_t)j * (size_t)n;
         for (int i = j; i < n; i++) {
             real[i] += column[i] * re;
             imaginary[i] += column[i] * im;
@@ -172,8 +172,8 @@ static void mix_points(maker *m, int wave) {
     // into the order of the grid
     float *to = m->mixed + 2 * (size_t)n * (size_t)(wave - 1);
     for (int i = 0; i < n; i++) {
-        to[2 * m->order[i]] = (float)real[i];
-        to[2 * m->order[i] + 1] = (float)imaginary[i];
+        to[2 * m->order[i]] = real[i];
+        to[2 * m->order[i] + 1] = imaginary[i];
     }
 }
 
@@ -347,10 +347,10 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->amplitude = bough_arena_doubles(scratch, 3 * ((size_t)m->n_wave + 1));
     m->order = bough_arena_take(scratch, n * sizeof *m->order);
     m->mixed = bough_arena_take(scratch, (2 * n * (size_t)m->n_coherent + 1) * sizeof *m->mixed);
-    m->wave = bough_arena_doubles(scratch, 2 * n);
-    m->factor = bough_arena_doubles(scratch, n * n);
+    m->wave = bough_arena_take(scratch, 2 * n * sizeof *m->wave);
+    m->factor = bough_arena_take(scratch, n * n * sizeof *m->factor);
     m->distance = bough_arena_doubles(scratch, n);
-    m->table = bough_arena_doubles(scratch, n);
+    m->table = bough_arena_take(scratch, n * sizeof *m->table);
     m->pair = bough_arena_take(scratch, n * n * sizeof *m->pair);
     m->series = bough_arena_take(scratch, 3 * BATCH * (size_t)m->box->n_time * sizeof *m->series);
     place *places = bough_arena_take(scratch, n * sizeof *places);

@@ -28,7 +28,7 @@ extern void dsyevr_(const char *job, const char *range, const char *uplo, const 
                     const double *tolerance, int *found, double *value, double *vector, const int *ldz,
                     int *support, double *work, const int *lwork, int *iwork, const int *liwork, int *info,
                     size_t job_length, size_t range_length, size_t uplo_length);
-extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
+extern void spotrf_(const char *triangle, const int *n, float *a, const int *lda, int *info,
                     size_t triangle_length);
 // Only OpenBLAS has these; other libraries leave the symbols null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
@@ -280,11 +280,11 @@ bool bough_cholesky_factor(int n, double *a) {
     return true;
 }
 
-bool bough_cholesky_lower(int n, double *a) {
+bool bough_cholesky_lower(int n, float *a) {
     if (n == 0) return true;
     prepare();
     int info = 0;
-    dpotrf_("L", &n, a, &n, &info, 1);
+    spotrf_("L", &n, a, &n, &info, 1);
     // a NaN anywhere enters all later rows
     return info == 0 && isfinite(a[(size_t)n * (size_t)n - 1]);
 }

@@ -73,8 +73,9 @@ bool bough_symmetric_smallest(int n, double *a, int count, double *value, double
 // a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
 bool bough_cholesky_factor(int n, double *a);
 
-// The same of a large matrix by LAPACK, column-major, its lower triangle; the upper one is left as it is.
-bool bough_cholesky_lower(int n, double *a);
+// The same of a large matrix in single precision by LAPACK, column-major, its lower triangle; the upper one
+// is left as it is.
+bool bough_cholesky_lower(int n, float *a);
 
 // Solves L Lᵀ x = b in place.
 void bough_cholesky_solve(int n, const double *factor, double *b);
