@@ -242,14 +242,18 @@ double bough_coarser_air_ratio(const bough_scene *scene, const bough_scene *othe
 
 // -- time -----------------------------------------------------------------------------------------
 
-// Tolerance, longest step and macro step over the run's.
+// Tolerance, longest step and macro step over the run's, and the largest tolerance.
 typedef struct looser {
-    double rtol, step, macro_step;
+    double rtol, step, macro_step, most;
 } looser;
 
-static const double loosest = 0.02;      // tolerance
-static const double tight_enough = 1e-5; // beside fixed steps, whose tolerance says nothing of their error
-static const double loosest_beside_mesh = 2e-3; // of a finer mesh, whose vibrations it has to resolve
+static const double loosest = 0.02;
+// Beside fixed steps, whose tolerance says nothing of their error, that of the companion is at least so
+// large.
+static const double tight_enough = 1e-5;
+// The vibrations of a finer mesh have to be resolved, above all beside sub-solvers, which start anew so often
+// that they err by less than their tolerance.
+static const double loosest_beside_mesh = 2e-3, loosest_beside_whole = 3e-4;
 
 // Where the run's error is taken as the whole difference, the steps of the companion must err little: up to
 // twice as much as the run beside an explicit coupling; a few times as much beside a finer mesh, which would
@@ -258,10 +262,14 @@ static const double loosest_beside_mesh = 2e-3; // of a finer mesh, whose vibrat
 // have a high order, and each end of a macro step cuts one of their steps short: macro steps are then four
 // times as long.
 static looser looser_of(const bough_scene *scene) {
-    double beside_mesh = fmax(12, fmin(100, 1e-6 / bough_scene_loosest_rtol(scene)));
-    if (usual_ratio(scene) == 1) return (looser){3, 1.5, 2};
-    if (some_finer(scene)) return (looser){beside_mesh, 2, 2};
-    return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4} : (looser){10, 2, 2};
+    double rtol = bough_scene_loosest_rtol(scene);
+    bool finer = some_finer(scene);
+    if (usual_ratio(scene) == 1) {
+        double times = has_fixed_steps(scene) ? fmax(3, tight_enough / rtol) : 3;
+        return (looser){times, 1.5, 2, finer ? loosest_beside_whole : loosest};
+    }
+    if (finer) return (looser){fmax(12, fmin(100, 1e-6 / rtol)), 2, 2, fmax(loosest_beside_mesh, rtol)};
+    return bough_coarser_steps_alone(scene) ? (looser){30, 2, 4, loosest} : (looser){10, 2, 2, loosest};
 }
 
 double bough_coarser_time_ratio(const bough_scene *scene) {
@@ -408,9 +416,7 @@ static void lengthen_steps(const bough_scene *scene, bough_scene *to) {
     }
     looser by = looser_of(scene);
     if (bough_coarser_steps_alone(scene) && bough_scene_suits_radau(scene)) x->master.solver = BOUGH_RADAU5;
-    double most = some_finer(scene) ? loosest_beside_mesh : loosest;
-    double least = has_fixed_steps(scene) ? tight_enough : x->master.rtol;
-    x->master.rtol = fmax(least, fmin(by.rtol * x->master.rtol, most));
+    x->master.rtol = fmin(by.rtol * x->master.rtol, by.most);
     x->master.step *= by.step;
     if (x->master.step == 0 && by.step < by.macro_step) x->master.step = by.step * x->macro_step;
     x->master.coarse = true;
