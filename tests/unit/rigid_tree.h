@@ -11,6 +11,9 @@
 
 enum { MOST = 64 };
 
+// Parts of a bough_tree_def from an array.
+#define LIST(part, array) .n_##part = (int)(sizeof(array) / sizeof *(array)), .part = (array)
+
 static const bough_vec3 down_z = {0, 0, -9.81};
 
 typedef struct fixture {
@@ -100,16 +103,11 @@ static inline fixture everything(double rtol) {
     bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .schedule = {.start = 0.1, .end = 0.3}},
                                     {.body = 3, .value = -2.0}};
     bough_tree_def def = {.gravity = {1, -2, -9},
-                          .n_bodies = 10,
-                          .n_markers = 3,
-                          .n_ports = 2,
-                          .n_loads = 2,
-                          .bodies = bodies,
-                          .markers = markers,
-                          .ports = ports,
-                          .loads = loads,
-                          .n_springs = 2,
-                          .springs = springs};
+                          LIST(bodies, bodies),
+                          LIST(markers, markers),
+                          LIST(ports, ports),
+                          LIST(loads, loads),
+                          LIST(springs, springs)};
     fixture f = build(&def, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
     bough_tree_set_wrench(f.tree, 2, 0.05, value, rate, NULL);

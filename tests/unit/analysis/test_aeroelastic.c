@@ -137,8 +137,6 @@ TEST(modes_do_not_depend_on_how_many_are_wanted) {
         check_ok(bough_vibration_find(arena, s, k == 0 ? FEW : MANY, &v[k]));
     }
     for (int k = 0; k < FEW; k++) {
-        print_message("%.5f %.5f Hz, %.5f %.5f 1/s\n", v[0].mode[k].frequency, v[1].mode[k].frequency,
-                      v[0].mode[k].growth, v[1].mode[k].growth);
         check_near(v[0].mode[k].frequency, v[1].mode[k].frequency, 5e-3, 0);
         check_near(v[0].mode[k].growth, v[1].mode[k].growth, 1e-2, 0);
     }
@@ -251,7 +249,6 @@ TEST(modes_are_within_their_residuals) {
         for (size_t j = 0; j < n; j++)
             nearest = fmin(nearest, hypot(value[j] - real, value[n + j] - imaginary));
         double off = nearest / hypot(real, imaginary);
-        print_message("residual %.2g, eigenvalue off by %.2g\n", v.mode[k].residual, off);
         assert_true(v.mode[k].residual < 1e-4);
         assert_true(off < 10 * v.mode[k].residual);
     }

@@ -45,14 +45,10 @@ static fixture mounted(double rtol, bool damped) {
         {0, {{1, -2, 3}, {0.4, 0.5, -0.6}}, true, {.start = 0, .end = 1}},
         {1, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, {.n = 3, .times = times, .values = values}}};
     bough_tree_def def = {.gravity = {0, 0, -9.81},
-                          .n_bodies = 2,
-                          .bodies = b,
-                          .n_markers = 3,
-                          .markers = markers,
-                          .n_springs = 2,
-                          .springs = springs,
-                          .n_bushings = 2,
-                          .bushings = bushings,
+                          LIST(bodies, b),
+                          LIST(markers, markers),
+                          LIST(springs, springs),
+                          LIST(bushings, bushings),
                           .n_applied = damped ? 2 : 0,
                           .applied = applied};
     return build(&def, rtol);
@@ -68,9 +64,8 @@ TEST(bushing_is_linear_along_and_about_an_axis) {
     const bough_marker_def markers[] = {{"ground", BOUGH_GROUND, bough_transform_identity()},
                                         {"plate", 0, bough_transform_identity()}};
     const bough_bushing_def bushing = {{0, 1}, {100, 100, 50, 30, 30, 8}, {0, 0, 0.8, 0, 0, 0.4}};
-    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 2, .markers = markers};
-    def.n_bushings = 1;
-    def.bushings = &bushing;
+    bough_tree_def def = {.n_bodies = 1, .bodies = &b, LIST(markers, markers)};
+    def.n_bushings = 1, def.bushings = &bushing;
     fixture f = build(&def, 1e-10);
     double t = 2.3, delta = 0.2, w = sqrt(25 - delta * delta);
     go_to(&f, t);

@@ -113,9 +113,7 @@ static bough_tree_def closed_def(bough_body_def *b, bough_marker_def *m, bough_c
     m[0] = (bough_marker_def){"from", 0, b[1].joint};
     m[1] = (bough_marker_def){"to", 1, bough_transform_identity()};
     const double q[7] = {pose.position.x, pose.position.y, pose.position.z, p.w, p.x, p.y, p.z};
-    b[1].parent = BOUGH_GROUND;
-    b[1].kind = BOUGH_JOINT_FREE;
-    b[1].joint = bough_transform_identity();
+    b[1].parent = BOUGH_GROUND, b[1].kind = BOUGH_JOINT_FREE, b[1].joint = bough_transform_identity();
     memcpy(b[1].coordinates, q, sizeof q);
     bough_twist_store(bough_tree_frame_twist(open->data, arm), b[1].speeds);
     return (bough_tree_def){.gravity = down_z,
@@ -336,11 +334,9 @@ TEST(closed_trees_fulfil_the_contract) {
         fixture open = build_with(&def, BOUGH_RADAU5, 1e-11);
         bough_tree_kinematics(open.tree, open.m->state, open.data);
         def = closed_def(b, m, c, &open);
-        c[1] = c[0];
-        c[1].name = "again";
+        c[1] = c[0], c[1].name = "again";
         def.n_closures = 2;
-        def.n_ports = 1;
-        def.ports = &port;
+        def.n_ports = 1, def.ports = &port;
         fixture f = build_with(&def, solver, 1e-8);
         assert_int_equal(f.tree->n_rows, 10);
         assert_int_equal(f.tree->closure_rank, 5);

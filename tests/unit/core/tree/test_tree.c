@@ -310,8 +310,7 @@ TEST(ground_fixed_tree_has_no_states) {
     bough_marker_def marker = {"clamp", 0, bough_transform_identity()};
     bough_port_def port = {.root = {.mass = 1}};
     bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b, .n_ports = 1, .ports = &port};
-    def.n_markers = 1;
-    def.markers = &marker;
+    def.n_markers = 1, def.markers = &marker;
     fixture f = build(&def, 1e-6);
     assert_int_equal(f.s.n_state, 0);
     assert_int_equal(f.s.n_input, 6);

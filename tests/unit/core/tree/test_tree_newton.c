@@ -39,18 +39,12 @@ static fixture everything_driven(void) {
                                          {2, {{2, 1, -1}, {-0.4, 0.3, 0.6}}, false, always}};
     const bough_end_def ends[] = {{7, {.mass = 0.3}}};
     bough_tree_def def = {.gravity = {1, -2, -9},
-                          .n_bodies = 10,
-                          .bodies = bodies,
-                          .n_markers = 5,
-                          .markers = markers,
-                          .n_springs = 2,
-                          .springs = springs,
-                          .n_bushings = 2,
-                          .bushings = bushings,
-                          .n_applied = 2,
-                          .applied = applied,
-                          .n_ends = 1,
-                          .ends = ends};
+                          LIST(bodies, bodies),
+                          LIST(markers, markers),
+                          LIST(springs, springs),
+                          LIST(bushings, bushings),
+                          LIST(applied, applied),
+                          LIST(ends, ends)};
     return build(&def, 1e-6);
 }
 
