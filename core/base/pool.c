@@ -124,7 +124,7 @@ static void do_task(bough_pool *p, uint64_t list, int k, int self) {
     wake(p, &p->waiting);
 }
 
-// There and back: 0, 1, …, n − 1, n − 1, …, 1, 0, 0, … for n threads.
+// The thread of a place in the list, of n threads: 0, 1, …, n − 1, n − 1, …, 1, 0, 0, …
 static int thread_of(int n, int place) { return place / n % 2 == 0 ? place % n : n - 1 - place % n; }
 
 // The thread whose task k is; −1: anyone's. Both tasks of a body belong to one, the last body's to thread 0.
@@ -132,7 +132,7 @@ static int owner(const bough_pool *p, int k) {
     int n = p->n_thread, bodies = p->bodies, place = p->first + k - p->before;
     if (bodies == 0) return thread_of(n, place);
     if (place < 0 || place >= 2 * bodies) return 0;
-    // second tasks of the bodies that are left over by equal numbers for all threads
+    // one of the bodies beyond an equal number for each thread
     bool left_over = bodies > n && place - bodies < bodies % n;
     if (place >= bodies && left_over) return -1;
     return thread_of(n, bodies - 1 - place % bodies);

@@ -154,8 +154,8 @@ static double fastest_turn(const bough_scene *scene) {
     for (int i = 0; i < scene->n_body; i++) {
         const bough_scene_joint *joint = &scene->body[i].joint;
         const bough_motion_def *given = &joint->motion[0].def;
-        bough_joint any = {
-            (bough_joint_kind)joint->kind, bough_transform_identity(), {1, 0, 0}, {0, 1, 0}}; // of any axes
+        // the speed is the same about any axes
+        bough_joint any = {(bough_joint_kind)joint->kind, bough_transform_identity(), {1, 0, 0}, {0, 1, 0}};
         fastest = fmax(fastest, bough_norm(bough_joint_twist(&any, joint->speeds).angular));
         if (joint->kind == BOUGH_JOINT_REVOLUTE && given->given && given->speed)
             fastest = fmax(fastest, fmax(fabs(given->from), fabs(given->to)));
