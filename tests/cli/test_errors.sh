@@ -63,6 +63,7 @@ bodies:
            damping: [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2], mass: [3, 0, 0, 1e-3, 1e-3, 0]}}
 END
 run 0 'warning: .*; cause: the mesh; try rod.segments: [0-9]*$' coarse.yaml --set simulation.error_bound=0.01
+grep -q '"text": ".*; cause: the mesh; try rod.segments: ' out/summary.json || fail "warnings of the summary"
 for share in mesh time; do
     grep -q "\"$share\": {" out/summary.json || fail "the share of the $share"
 done
@@ -108,6 +109,7 @@ bodies:
 END
 noisy='simulation.coupling={scheme: iterated, tolerance: 1e-12, iterations: 5}'
 run 0 'warning: .* of 20 macro steps ended before they had converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms'
+grep -q '"limit": "unfinished_steps"' out/summary.json || fail "unfinished steps in the summary's warnings"
 run 3 'not converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' --set simulation.error_estimate=none
 run 0 '^largest errors: .*; mesh .*; time ' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' \
     --set simulation.error_shares=true

@@ -7,7 +7,7 @@
 
 #include <sys/resource.h>
 
-enum { LINE = 400, WORST = 3 };
+enum { WORST = 3 };
 
 static double bound_of(const bough_run *run) { return run->simulation->scene->simulation.error_bound; }
 
@@ -23,6 +23,17 @@ static void warn_of_force(const bough_run *run, char text[BOUGH_ERROR_WARNING]) 
              run->simulation->scene->simulation.error_shares
                  ? ""
                  : "; simulation.error_shares: true finds the cause");
+}
+
+// A warning about macro steps that ended before they had converged, or "".
+static void warn_of_steps(const bough_run *run, char text[BOUGH_ERROR_WARNING]) {
+    const bough_master *m = run->simulation->master;
+    long unfinished = bough_scheme_reported(m->coupling).unfinished;
+    text[0] = '\0';
+    if (unfinished == 0) return;
+    snprintf(text, BOUGH_ERROR_WARNING,
+             "%ld of %ld macro steps ended before they had converged; the stated error includes the effect",
+             unfinished, m->steps);
 }
 
 // -- memory ---------------------------------------------------------------------------------------
@@ -125,20 +136,35 @@ static void write_input(bough_summary *s, const bough_run_command *command) {
     bough_summary_text(s, "diagnosis", bough_is_ok(end) ? NULL : end->message);
 }
 
-// Limits of the models that the run has passed: each with body and time of the first passing.
-static void write_warnings(bough_summary *s, const bough_run *run) {
+// Body and time are those of the first passing of a limit; otherwise they are null.
+static void write_warning(bough_summary *s, const char *limit, const char *body, double time,
+                          const char *text) {
+    if (!text[0]) return;
+    bough_summary_object(s, NULL);
+    bough_summary_text(s, "limit", limit);
+    bough_summary_text(s, "body", body);
+    bough_summary_number(s, "time", time);
+    bough_summary_text(s, "text", text);
+    bough_summary_end(s);
+}
+
+// All that the run warns of: the error, a coupling that grows, steps that did not converge, limits of the
+// models.
+static void write_warnings(bough_summary *s, const bough_run_command *command) {
+    const bough_simulation *simulation = command->run.simulation;
+    char text[BOUGH_ERROR_WARNING];
     bough_summary_array(s, "warnings");
+    write_warning(s, "error", NULL, (double)NAN, command->warning);
+    warn_of_force(&command->run, text);
+    write_warning(s, "error", NULL, (double)NAN, text);
+    write_warning(s, "coupling", NULL, (double)NAN, simulation->master->verdict);
+    warn_of_steps(&command->run, text);
+    write_warning(s, "unfinished_steps", NULL, (double)NAN, text);
     for (int k = 0; k < BOUGH_LIMITS; k++) {
-        const bough_passing *p = &run->simulation->validity->limit[k];
-        char text[LINE];
+        const bough_passing *p = &simulation->validity->limit[k];
         if (!p->passed) continue;
-        bough_validity_describe(run->simulation, k, text, sizeof text);
-        bough_summary_object(s, NULL);
-        bough_summary_text(s, "limit", bough_limit_name(k));
-        bough_summary_text(s, "body", run->simulation->scene->body[p->body].name);
-        bough_summary_number(s, "time", p->time);
-        bough_summary_text(s, "text", text);
-        bough_summary_end(s);
+        bough_validity_describe(simulation, k, text, sizeof text);
+        write_warning(s, bough_limit_name(k), simulation->scene->body[p->body].name, p->time, text);
     }
     bough_summary_end(s);
 }
@@ -293,7 +319,7 @@ bough_status bough_run_summarise(const bough_run_command *command) {
     bough_summary s;
     BOUGH_TRY(bough_summary_open(&s, command->folder, "summary.json"));
     write_input(&s, command);
-    write_warnings(&s, run);
+    write_warnings(&s, command);
     write_method(&s, run);
     write_cost(&s, command);
     write_size(&s, command);
@@ -368,17 +394,6 @@ static void print_channels(bough_run_command *command) {
     for (int i = 0; i < n; i++) print_channel(command, list[i]);
 }
 
-static void print_warnings(const bough_run *run) {
-    const bough_master *m = run->simulation->master;
-    long unfinished = bough_scheme_reported(m->coupling).unfinished;
-    if (unfinished > 0) {
-        printf(
-            "warning: %ld of %ld macro steps ended before they had converged; the stated error includes the effect\n",
-            unfinished, m->steps);
-    }
-    bough_validity_print(run->simulation, stdout);
-}
-
 static void print_shares(const bough_run_command *command, int channel) {
     for (int k = 0; k < BOUGH_SHARES && command->shares.found; k++) {
         const bough_error_share *share = &command->shares.share[k];
@@ -433,9 +448,12 @@ static void print_next(const bough_run_command *command) {
 }
 
 void bough_run_report(bough_run_command *command) {
+    char warning[BOUGH_ERROR_WARNING];
     print_run(command);
     print_channels(command);
     print_error(command);
-    print_warnings(&command->run);
+    warn_of_steps(&command->run, warning);
+    if (warning[0]) printf("warning: %s\n", warning);
+    bough_validity_print(command->run.simulation, stdout);
     print_next(command);
 }
