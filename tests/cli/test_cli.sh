@@ -186,6 +186,11 @@ checks() {
     refused "error: --set: aero.wind.file: cannot open the wind file .*no.bts" check "$turbine" --set 'aero.wind={kind: bts, file: no.bts}'
     expect 0 check "$beam" --set 'bodies[beam].rod.segments=1'
     has ../stdout '^warning: beam at 0 s: a rod of one segment bends by a third too little'
+    couple='force: [1, 0, 0], moment: [0, 60, 0], frame: follower}]'
+    expect 0 check "$beam" --set 'bodies[beam].rod.segments=10' --set "loads=[{body: beam, at: 0.3 m, $couple"
+    has ../stderr "^--set: warning: body 'beam': the direction of this follower errs by about 0.006 rad"
+    expect 0 check "$beam" --set 'bodies[beam].rod.segments=10' --set "loads=[{body: beam, at: 0.4 m, $couple"
+    [ ! -s ../stderr ] || fail "a warning for a follower on a vertex"
     refused 'at most 1e+09 are taken' check "$bar" --set 'simulation.duration=1e30 s'
     expect 0 check "$scenes/joints.yaml"
     has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'

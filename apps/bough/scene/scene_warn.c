@@ -36,6 +36,48 @@ static void warn_inertia(const bough_scene_body *b, FILE *stream) {
         b->name, v[0], v[1], v[2]);
 }
 
+// -- loads ----------------------------------------------------------------------------------------
+
+static bool is_vertex(const bough_scene_rod *rod, double span) {
+    double length = bough_scene_arc_length(&rod->structure);
+    for (int i = 0; i <= rod->n_segment; i++) {
+        double vertex = length * bough_section_graded(rod->grading, (double)i / rod->n_segment);
+        if (fabs(span - vertex) < 1e-9 * length) return true;
+    }
+    return false;
+}
+
+// The angle by which a couple bends a segment of mean length [rad].
+static double bend_of_segment(const bough_scene_rod *rod, const bough_scene_load *couple) {
+    const bough_section_station *root = &rod->structure.station[0].def;
+    double stiffness = fmin(root->stiffness[15], root->stiffness[18]);
+    double length = bough_scene_arc_length(&rod->structure) / rod->n_segment;
+    return hypot(couple->wrench[3], couple->wrench[4]) * length / stiffness;
+}
+
+// A follower within a segment turns as the mean of its ends, which a couple at the same place turns
+// differently.
+static void warn_follower(const bough_scene *scene, const bough_scene_load *load, FILE *stream) {
+    static const double small = 1e-3; // of the load, as an error of its direction [rad]
+    bool force = load->wrench[0] != 0 || load->wrench[1] != 0 || load->wrench[2] != 0;
+    if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER || load->place != BOUGH_SCENE_AT_SPAN || !force) return;
+    const bough_scene_body *b = &scene->body[load->body];
+    double bend = 0;
+    for (int k = 0; k < scene->n_load; k++) {
+        const bough_scene_load *couple = &scene->load[k];
+        if (couple->body_name == NULL || couple->body != load->body || couple->place != BOUGH_SCENE_AT_SPAN ||
+            couple->span[0] != load->span[0])
+            continue;
+        bend += bend_of_segment(&b->rod, couple);
+    }
+    if (!(bend / 4 > small) || is_vertex(&b->rod, load->span[0])) return;
+    warn(
+        load->node, stream,
+        "body '%s': the direction of this follower errs by about %.1g rad, because a couple acts at the same "
+        "place within a segment, and no estimate contains it: put a vertex there (rod.part or rod.segments)",
+        b->name, bend / 4);
+}
+
 // -- air and control ------------------------------------------------------------------------------
 
 // A negative drag coefficient means swapped columns or a wrong sign.
@@ -147,6 +189,9 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream) {
         last = b->node;
         if (bough_node_find(b->node, "inertia")) warn_inertia(b, stream);
         if (b->micro.node) warn_micro(scene, b, stream);
+    }
+    for (int k = 0; k < scene->n_load; k++) {
+        if (scene->load[k].body_name != NULL) warn_follower(scene, &scene->load[k], stream);
     }
     if (scene->aero.node) warn_polars(&scene->aero.polars, stream);
     if (scene->control.node) warn_law(&scene->control, stream);
