@@ -19,6 +19,7 @@ typedef struct search {
     const bough_eigen_operator *op;
     bough_arnoldi basis;
     int *order; // of the projected eigenvalues, by falling modulus
+    unsigned seed;
 } search;
 
 static bough_status apply(void *self, int n, const double *z, double *image) {
@@ -38,22 +39,30 @@ static void balance(bough_arnoldi *a, const double *smooth) {
     for (int i = 0; i < half; i++) a->weight[i] *= speed / displacement;
 }
 
-// Random vectors smoothed by the operator.
-static void start(search *s) {
+// Appends a random vector, smoothed by the operator, to the basis.
+static void add_random(search *s) {
     bough_arnoldi *a = &s->basis;
-    unsigned seed = 1;
-    for (int k = 0; k < BLOCK_SIZE; k++) {
-        double *random = a->basis + (size_t)(a->capacity - 1) * (size_t)a->length;
-        for (int i = 0; i < a->length; i++) {
-            seed = seed * 1664525u + 1013904223u;
-            random[i] = a->weight[i] > 0 ? (double)(seed >> 8) / 8388608.0 - 1 : 0;
-        }
-        for (int twice = 0; twice < 2; twice++) {
-            apply(s, 1, random, a->image);
-            memcpy(random, a->image, (size_t)a->length * sizeof *random);
-        }
-        if (k == 0 && s->op->balance) balance(a, random);
-        bough_arnoldi_append(a, a->image);
+    double *random = a->basis + (size_t)(a->capacity - 1) * (size_t)a->length;
+    for (int i = 0; i < a->length; i++) {
+        s->seed = s->seed * 1664525u + 1013904223u;
+        random[i] = a->weight[i] > 0 ? (double)(s->seed >> 8) / 8388608.0 - 1 : 0;
+    }
+    for (int twice = 0; twice < 2; twice++) {
+        apply(s, 1, random, a->image);
+        memcpy(random, a->image, (size_t)a->length * sizeof *random);
+    }
+    if (a->count == 0 && s->op->balance) balance(a, random);
+    bough_arnoldi_append(a, a->image);
+}
+
+// Extends the space to a dimension. It may be invariant before, as that of more equal eigenvalues than there
+// were starting vectors: another one then leads on.
+static void extend(search *s, int dimension) {
+    bough_arnoldi *a = &s->basis;
+    for (int before = -1; a->done < dimension && a->count > before;) {
+        before = a->count;
+        bough_arnoldi_extend(a, dimension);
+        if (a->done == a->count) add_random(s);
     }
 }
 
@@ -113,7 +122,7 @@ static bool iterate(search *s, int wanted, int *chosen, int *found) {
     double before = -1, sum;
     for (int look = 0; look <= LOOKS; look++) {
         // a larger space each time, its Ritz values by falling modulus
-        bough_arnoldi_extend(a, first + first * look / 4);
+        extend(s, first + first * look / 4);
         if (!bough_arnoldi_project(a)) return false;
         sort(s);
         *found = select(s, wanted, chosen, &sum);
@@ -178,12 +187,12 @@ static void fill_pair(const search *s, int k, double *x, double *y, bough_eigen_
 static bough_status find_in(bough_arena *own, bough_arena *arena, const bough_eigen_operator *op, int wanted,
                             bough_eigen_pair *pair, int *found) {
     int first = 9 * wanted / 2 + SPARE, capacity = first + first * LOOKS / 4 + BLOCK_SIZE;
-    search s = {.op = op, .basis = {.apply = apply, .self = &s}};
+    search s = {.op = op, .basis = {.apply = apply, .self = &s}, .seed = 1};
     s.order = bough_arena_take(own, (size_t)(capacity + wanted) * sizeof *s.order);
     bough_arnoldi_create(own, op->length, capacity, BLOCK_SIZE, &s.basis);
     memcpy(s.basis.weight, op->weight, (size_t)op->length * sizeof(double));
     int *chosen = s.order + capacity;
-    start(&s);
+    for (int k = 0; k < BLOCK_SIZE; k++) add_random(&s);
     if (!iterate(&s, wanted, chosen, found)) {
         return bough_fail(BOUGH_FAILED,
                           "%s: the %d lowest eigenvalues were not found to %g; ask"

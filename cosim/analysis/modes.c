@@ -54,21 +54,28 @@ static double largest(const double *x, int n) {
     return most;
 }
 
-// theory (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
+// sum ← γ(N dN⁺/dt − S) x
+static void add_rates(const modes *m, const double *x, double *sum) {
+    const bough_modes_def *def = m->def;
+    memset(sum, 0, (size_t)m->whole->assembly->n_state * sizeof *sum);
+    bough_modes_add_rate(def, m->rate, def->n_row, def->row, -1 / def->point, x, sum);
+    for (int j = 0; j < def->n_axes; j++)
+        for (int i = 0; i < def->n_axes; i++) sum[i] += def->axes[j * def->n_axes + i] * x[j] / def->point;
+}
+
+// theory (76): (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z, with (123) in −S
 static void apply_once(modes *m, const double *z, double *image) {
     int n = m->whole->assembly->n_state;
     // the first term, without rotation
     memcpy(image, z, (size_t)n * sizeof *image);
     bough_whole_solve(m->whole, image);
     bough_whole_project(m->whole, m->def->state, image);
-    if (m->def->spin == 0 || m->diverged) return;
+    if ((m->def->spin == 0 && m->def->n_axes == 0) || m->diverged) return;
     // further terms until they are negligible
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
     for (int k = 0; k < TERMS; k++) {
-        memset(m->moved, 0, (size_t)n * sizeof *m->moved);
-        bough_modes_add_rate(m->def, m->rate, m->def->n_row, m->def->row, -1 / m->def->point, m->term,
-                             m->moved);
+        add_rates(m, m->term, m->moved);
         memcpy(m->term, m->moved, (size_t)n * sizeof *m->term);
         bough_whole_solve(m->whole, m->term);
         bough_whole_project(m->whole, m->def->state, m->term);

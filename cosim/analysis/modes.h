@@ -21,6 +21,8 @@ typedef struct bough_modes_def {
     double spin;         // Ω [rad/s]; 0: no part rotates
     int n_part, n_row;   // parts by growing azimuth; rows of each
     const int *row;      // (n_part × n_row) corresponding rows of the state
+    int n_axes;          // first states whose axes turn; 0: none
+    const double *axes;  // N dN⁺/dt of these, theory (123), column-major (n_axes × n_axes) [1/s]
 } bough_modes_def;
 
 // Harmonic h of a pattern over n parts, complex: (1/n) Σ_k y_k exp(−i 2πhk/n), y (n) and harmonic as real and
@@ -35,6 +37,6 @@ void bough_modes_add_rate(const bough_modes_def *def, const double *rate, int n,
                           double factor, const double *x, double *sum);
 
 // Finds pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
-// spin is too fast for the point: it should be several times the largest h Ω.
+// spin is too fast for the point: it should be several times the largest h Ω, and the speed of the axes.
 bough_status bough_modes_find(bough_arena *arena, bough_whole *whole, const bough_modes_def *def,
                               bough_eigen_pair *pair, bough_eigen_count *count);

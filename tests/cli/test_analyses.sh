@@ -133,6 +133,48 @@ statics() {
 }
 
 # The blade's frequencies at rest: beam finite elements converged at 800 elements.
+# Modes of bodies that spin about free axes, of more bodies alike than a search has starting vectors, and slow ones.
+spinning() {
+    cat >../disc.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 1 s}
+bodies:
+  - {name: disc, fidelity: rigid, mass: 2 kg, inertia: [0.1, 0.1, 0.2],
+     joint: {kind: planar, parent: ground, axis: z, angular_speed: 3 rad/s}}
+bushings: [{name: b, from: ground, to: disc, stiffness: [200, 200, 200]}]
+EOF
+    # 10 rad/s in ground axes is 10 -+ 3 in those of the disc
+    expect 0 modes ../disc.yaml --set 'modes={of: scene}' --out disc
+    near ../stdout '^ *1 ' 2 1.114085 1e-5
+    near ../stdout '^ *2 ' 2 2.069014 1e-5
+    # a top: J = 1.1, C = 0.05 kg m^2 and m g h = 9.81 N m; the growth rate is the root of mgh/J - (C 20/2J)^2
+    cat >../top.yaml <<'EOF'
+gravity: [0, 0, -9.81]
+simulation: {duration: 1 s}
+bodies:
+  - {name: top, fidelity: rigid, mass: 1 kg, centre_of_mass: [0, 0, 1], inertia: [0.1, 0.1, 0.05],
+     joint: {kind: spherical, parent: ground, angular_velocity: [0 rpm, 0 rpm, 20 rad/s]}}
+EOF
+    expect 0 modes ../top.yaml --set 'modes={of: scene}' --out top
+    has ../stdout 'unstable: mode 1 grows at 2.95154 /s'
+    expect 2 modes ../top.yaml --set 'modes={of: scene}' --out top --sensitivity 1
+    has ../stderr 'sensitivities are not computed where bodies turn'
+    {
+        echo 'gravity: [0, 0, 0]'
+        echo 'simulation: {duration: 1 s}'
+        echo 'bodies:'
+        for i in 1 2 3 4 5 6 7; do
+            echo "  - {name: a$i, mass: 1, fidelity: rigid, joint: {kind: prismatic, parent: ground, axis: x, stiffness: 100}}"
+        done
+        echo '  - {name: slow, mass: 1, fidelity: rigid, joint: {kind: prismatic, parent: ground, axis: x, stiffness: 1e-8}}'
+    } >../alike.yaml
+    expect 0 modes ../alike.yaml --set 'modes={of: scene, count: 10}' --out alike
+    [ "$(grep -c '^ *[1-9] *1.59155 ' ../stdout)" -eq 7 ] || fail "$said: not 7 equal modes"
+    near ../stdout '^ *1 ' 2 1.59155e-5 1e-10
+    has ../stdout '^8 of the 10 modes asked for'
+    rm -r disc top alike
+}
+
 modes() {
     expect 0 modes "$blade" --set 'modes={count: 6, shapes: true}'
     has ../stdout '^rod blade: 48 segments, 61.5 m, root held$'
@@ -298,4 +340,5 @@ sensed
 loaded
 still
 modes
+spinning
 [ $failures -eq 0 ]

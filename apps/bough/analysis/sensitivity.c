@@ -5,10 +5,12 @@
 
 #include <complex.h>
 
-static const double difference = 1e-4; // of the largest entry of a vector in units of its scale
-static const double step = 0.1;        // of a parameter, in units of its change: polars have corners
-static const double least = 1e-9;      // changes of λ relative to it are rounding
-static const double exact = 1e-6;      // residual of an eigenvector
+static const double difference = 1e-3; // of the largest entry of a vector in units of its scale, and twice it
+static const double step = 1e-3;   // of a parameter, in units of its change: with the shape of a slender rod
+                                   // its modes stretch it, an error of the square of the step
+static const double least = 1e-9;  // changes of λ relative to it are rounding
+static const double exact = 1e-6;  // residual of an eigenvector
+static const double beside = 1e-6; // of λ, relative: inverse iteration there does not separate equal λ
 static const double complex imaginary = (double complex)I;
 
 enum { ITERATIONS = 4 }; // of inverse iteration about an eigenvalue that is known to some digits
@@ -32,6 +34,11 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     *x = (linear){.simulation = s, .n = s->master->assembly->n_state};
     BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x->point));
     const bough_modes_def *def = &x->point.def;
+    if (def->n_axes > 0)
+        return bough_fail(BOUGH_INVALID,
+                          "%.200s: sensitivities are not computed where bodies turn on free, spherical or "
+                          "planar joints",
+                          s->scene->file);
     x->in_air = bough_air_follows(s->scene);
     x->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     if (x->in_air) {
@@ -102,15 +109,20 @@ static double size_of(const linear *x, const double *y) {
     return largest > 0 ? difference / largest : 0;
 }
 
-// image = (J − S) y
+// image = (J − S) y by a difference of order 4: a transverse change of slender rods stretches segments, with
+// a force that grows with its third power.
 static bough_status multiply_members(linear *x, double size, const double *y, double *image) {
+    static const double weight[] = {8. / 12, -1. / 12};
     const bough_vibration_point *p = &x->point;
     memset(image, 0, (size_t)(x->n + x->m) * sizeof *image);
-    for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < x->n; i++) x->moved[i] = p->state[i] + (2 * side - 1) * size * y[i];
-        BOUGH_TRY(bough_whole_rate(p->whole, p->def.time, x->moved, x->side[side]));
+    for (int times = 1; times <= 2; times++) {
+        for (int side = 0; side < 2; side++) {
+            double change = (2 * side - 1) * times * size;
+            for (int i = 0; i < x->n; i++) x->moved[i] = p->state[i] + change * y[i];
+            BOUGH_TRY(bough_whole_rate(p->whole, p->def.time, x->moved, x->side[side]));
+        }
+        for (int i = 0; i < x->n; i++) image[i] += weight[times - 1] * (x->side[1][i] - x->side[0][i]) / size;
     }
-    for (int i = 0; i < x->n; i++) image[i] = (x->side[1][i] - x->side[0][i]) / (2 * size);
     bough_modes_add_rate(&p->def, x->rate, x->n_all, x->row, -1, y, image);
     return bough_ok();
 }
@@ -179,7 +191,7 @@ static bool iterate(bough_arena *arena, int n, const double *matrix, bool transp
     for (size_t j = 0; j < all; j++)
         for (size_t i = 0; i < all; i++)
             factor[j * all + i] = transposed ? matrix[i * all + j] : matrix[j * all + i];
-    for (size_t i = 0; i < all; i++) factor[i * all + i] -= value;
+    for (size_t i = 0; i < all; i++) factor[i * all + i] -= (1 + beside) * value;
     if (!bough_complex_factor(n, (double *)factor, pivot)) return false;
     for (int k = 0; k < ITERATIONS * count; k++) {
         double complex *x = vector + (size_t)(k % count) * all;
@@ -202,15 +214,21 @@ static bool differ(int n, const double complex *a, const double complex *b) {
     return cabs(sum) < 0.99;
 }
 
-// λ by the quotient of both vectors; its residual relative to |λ|.
+// λ by the quotient of both vectors; its residual relative to |λ|, 0 where that is rounding of the product.
 static double improve(bough_arena *arena, const double *matrix, mode *x) {
+    static const double rounding = 1e-14;
     size_t all = (size_t)x->all;
-    double complex *image = take_complex(arena, all);
-    for (size_t j = 0; j < all; j++)
-        for (size_t i = 0; i < all; i++) image[i] += matrix[j * all + i] * x->right[j];
+    double complex *image = take_complex(arena, 2 * all), *terms = image + all;
+    for (size_t j = 0; j < all; j++) {
+        for (size_t i = 0; i < all; i++) {
+            image[i] += matrix[j * all + i] * x->right[j];
+            terms[i] += fabs(matrix[j * all + i]) * cabs(x->right[j]);
+        }
+    }
     x->value = product(x->all, x->left, image) / product(x->all, x->left, x->right);
     for (size_t i = 0; i < all; i++) image[i] -= x->value * x->right[i];
-    return length_of(x->all, image) / cabs(x->value);
+    double residual = length_of(x->all, image);
+    return residual > rounding * length_of(x->all, terms) ? residual / cabs(x->value) : 0;
 }
 
 static bough_status find_vectors(bough_arena *arena, linear *system, mode *x) {

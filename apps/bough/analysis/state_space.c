@@ -7,7 +7,7 @@
 #include "apps/bough/model/equilibrium.h"
 
 // Differences: of a state in units of its scale, of an input relative to its value or to 1.
-static const double difference = 1e-5;
+static const double difference = 3e-4;
 
 typedef enum input_kind { SCENE_LOAD, GENERATOR_TORQUE, COLLECTIVE_PITCH, WIND_SPEED } input_kind;
 
@@ -171,28 +171,31 @@ static bough_status evaluate(work *w, const double *state, int side) {
     return bough_ok();
 }
 
-// Columns of state k, or of input k, by the difference of changes to both sides. The jump of a periodic angle
-// is removed.
+// Columns of state k, or of input k, by differences of order 4: a transverse change of slender rods stretches
+// segments, with a force that grows with its third power. The jump of a periodic angle is removed.
 static bough_status differentiate(work *w, bool by_input, int k, double size, bough_state_space *to) {
     const bough_assembly *a = w->whole->assembly;
     double *rate = (by_input ? to->b : to->a) + (size_t)k * (size_t)to->n;
     double *value = (by_input ? to->d : to->c) + (size_t)k * (size_t)to->n_output;
-    for (int side = 0; side < 2; side++) {
-        double change = (2 * side - 1) * size;
-        memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
-        if (by_input)
-            set_input(w, k, change, w->state);
-        else
-            w->state[k] += change;
-        bough_status status = evaluate(w, w->state, side);
-        if (by_input) bough_equilibrium_set_state(w->s, a, w->time, w->about);
-        if (by_input) set_input(w, k, 0, w->state);
-        if (!bough_is_ok(&status)) return status;
-    }
-    for (int i = 0; i < a->n_state; i++) rate[i] = (w->rate[1][i] - w->rate[0][i]) / (2 * size);
-    for (int i = 0; i < to->n_output; i++) {
-        double change = w->value[1][i] - w->value[0][i], turn = w->channels.channel[i].turn;
-        value[i] = (turn > 0 ? remainder(change, turn) : change) / (2 * size);
+    for (int times = 1; times <= 2; times++) {
+        double weight = times == 1 ? 8 / (12 * size) : -1 / (12 * size);
+        for (int side = 0; side < 2; side++) {
+            double change = (2 * side - 1) * times * size;
+            memcpy(w->state, w->about, (size_t)a->n_state * sizeof *w->state);
+            if (by_input)
+                set_input(w, k, change, w->state);
+            else
+                w->state[k] += change;
+            bough_status status = evaluate(w, w->state, side);
+            if (by_input) bough_equilibrium_set_state(w->s, a, w->time, w->about);
+            if (by_input) set_input(w, k, 0, w->state);
+            if (!bough_is_ok(&status)) return status;
+        }
+        for (int i = 0; i < a->n_state; i++) rate[i] += weight * (w->rate[1][i] - w->rate[0][i]);
+        for (int i = 0; i < to->n_output; i++) {
+            double changed = w->value[1][i] - w->value[0][i], turn = w->channels.channel[i].turn;
+            value[i] += weight * (turn > 0 ? remainder(changed, turn) : changed);
+        }
     }
     return bough_ok();
 }

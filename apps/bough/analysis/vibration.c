@@ -15,12 +15,17 @@ static const double least_point = 1, spins = 4;
 // root of the rounding.
 static const double free_motion = 1e-3;
 
+// A slower oscillation, down to this fraction, is a mode if it is found again, to within `same`, about
+// another point, `below` or, where something turns, `above` this one: that of a free motion grows with the
+// point.
+static const double slowest = 1e-5, below = 0.1, above = 2, same = 0.01;
+
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 
 // Rounding in the solutions grows with the fourth power of |λ| over the point. If the residual of an
 // eigenvector exceeds `exact`, the point moves to the lowest eigenvalue, if that is at least `nearer` times
-// as far.
-static const double exact = 1e-9, nearer = 1.5;
+// as far. A real λ within `beside` of the point hides the others; the point is then multiplied by `aside`.
+static const double exact = 1e-9, nearer = 1.5, beside = 0.1, aside = 1.3;
 enum { MOVES = 6 }; // of the point, most: the first values may be of rounding alone
 
 static const double rounding = 1e-10; // damping ratios below it are none
@@ -73,6 +78,70 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibra
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
+// Converts the coordinates of the tree in a change of the state to or from speeds, which rotate with the
+// bodies. In place; work: (n_q).
+static void convert(const bough_tree *tree, const double *state, bool to_speeds, double *work, double *x) {
+    memset(work, 0, (size_t)tree->n_q * sizeof *work);
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int at = link->first_coordinate;
+        if (to_speeds)
+            bough_joint_speed(&link->joint, state + at, x + at, work + at);
+        else
+            bough_joint_rate(&link->joint, state + at, x + at, work + at);
+    }
+    memcpy(x, work, (size_t)tree->n_q * sizeof *x);
+}
+
+// The angular speed of the fastest joint [rad/s].
+static double fastest_joint(const bough_simulation *s) {
+    double fastest = 0;
+    for (int i = 0; i < s->tree->n_links; i++)
+        fastest = fmax(fastest, bough_norm(s->view->joint_twist[i].angular));
+    return fastest;
+}
+
+// Advances all joints for a time at their speeds.
+static void advance(const bough_tree *tree, double time, double *rate, double *state) {
+    bough_tree_coordinate_rate(tree, state, rate);
+    for (int k = 0; k < tree->n_q; k++) state[k] += time * rate[k];
+    for (int i = 0; i < tree->n_links; i++)
+        bough_joint_normalise(&tree->links[i].joint, state + tree->links[i].first_coordinate);
+}
+
+// theory (123): N dN⁺/dt of the coordinates, where it is not 0, by a difference in time.
+static void define_axes(bough_arena *arena, const bough_simulation *s, bough_vibration_point *x) {
+    static const double angle = 1e-5; // [rad]
+    const bough_tree *tree = s->tree;
+    double fastest = fastest_joint(s), largest = 0;
+    if (fastest < at_rest) return;
+    size_t n = (size_t)tree->n_q, size = (size_t)s->master->assembly->n_state;
+    double *side[2], *change[2], *work, *axes = bough_arena_doubles(arena, n * n);
+    bough_arena_each(arena, size, &side[0], &side[1], &work);
+    bough_arena_each(arena, n, &change[0], &change[1]);
+    for (int k = 0; k < 2; k++) {
+        memcpy(side[k], x->state, size * sizeof(double));
+        advance(tree, (2 * k - 1) * angle / fastest, work, side[k]);
+    }
+    for (size_t j = 0; j < n; j++) {
+        double *column = axes + j * n;
+        for (int k = 0; k < 2; k++) {
+            memset(change[k], 0, n * sizeof(double));
+            change[k][j] = 1;
+            convert(tree, side[k], true, work, change[k]);
+        }
+        for (size_t i = 0; i < n; i++) {
+            column[i] = (change[1][i] - change[0][i]) * fastest / (2 * angle);
+            largest = fmax(largest, fabs(column[i]));
+        }
+        convert(tree, x->state, false, work, column);
+    }
+    if (largest < at_rest) return;
+    x->def.n_axes = tree->n_q;
+    x->def.axes = axes;
+    x->def.point = fmax(x->def.point, spins * fastest);
+}
+
 // Inputs of the true equilibrium, so that weight and thrust of the whole rotor are on the tree; the blades
 // have their mean deflection.
 static void define(double time, bough_vibration_point *x) {
@@ -94,27 +163,7 @@ static void define(double time, bough_vibration_point *x) {
 // Advances all joints at their speeds, the fastest by `angle`.
 static void move_on(const bough_tree *tree, double fastest, double angle, double *rate, double *state) {
     enum { STEPS = 200 };
-    for (int step = 0; step < STEPS; step++) {
-        bough_tree_coordinate_rate(tree, state, rate);
-        for (int k = 0; k < tree->n_q; k++) state[k] += angle / fastest / STEPS * rate[k];
-        for (int i = 0; i < tree->n_links; i++)
-            bough_joint_normalise(&tree->links[i].joint, state + tree->links[i].first_coordinate);
-    }
-}
-
-// Converts the coordinates of the tree in a change of the state to or from speeds, which rotate with the
-// bodies. In place; work: (n_q).
-static void convert(const bough_tree *tree, const double *state, bool to_speeds, double *work, double *x) {
-    memset(work, 0, (size_t)tree->n_q * sizeof *work);
-    for (int i = 0; i < tree->n_links; i++) {
-        const bough_link *link = &tree->links[i];
-        int at = link->first_coordinate;
-        if (to_speeds)
-            bough_joint_speed(&link->joint, state + at, x + at, work + at);
-        else
-            bough_joint_rate(&link->joint, state + at, x + at, work + at);
-    }
-    memcpy(x, work, (size_t)tree->n_q * sizeof *x);
+    for (int step = 0; step < STEPS; step++) advance(tree, angle / fastest / STEPS, rate, state);
 }
 
 // (I − γJ)⁻¹ of a vector with all motions in it.
@@ -136,7 +185,7 @@ static bough_status respond(const bough_simulation *s, const bough_vibration_poi
 static bough_status refuse(const bough_simulation *s, double change) {
     return bough_fail(
         BOUGH_INVALID,
-        "%.200s: the linear system changes by %.2g of itself as the bodies turn (a rotor with two or unequal blades, or out of balance): its solutions are periodic (Floquet) and not computed; take 'modes.linear: true' for the system at the present azimuth, or modes at rest",
+        "%.200s: the linear system changes by %.2g of itself as the bodies turn (a rotor with two or unequal blades, with blades on hinges, or out of balance): its solutions are periodic (Floquet) and not computed; take 'modes.linear: true' for the system at the present azimuth, or modes at rest",
         s->scene->file, change);
 }
 
@@ -146,13 +195,12 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
                                    const bough_vibration_point *x) {
     static const double angles[] = {1, 2.3};
     size_t n = (size_t)s->master->assembly->n_state;
-    double *state, *work, *present, *turned, *scale, fastest = 0;
+    double *state, *work, *present, *turned, *scale, fastest = fastest_joint(s);
     bough_arena_each(arena, n + 1, &state, &work, &present, &turned, &scale);
     bough_assembly_scales(s->master->assembly, scale);
     bool driven = false; // by given motions, which go on with time
     for (int i = 0; i < s->tree->n_links; i++) {
         double speed = bough_norm(s->view->joint_twist[i].angular);
-        fastest = fmax(fastest, speed);
         driven = driven || (s->tree->links[i].motion != NULL && speed > at_rest);
     }
     BOUGH_TRY(respond(s, x, x->def.time, x->state, work, present));
@@ -220,6 +268,7 @@ bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s,
     *point = (bough_vibration_point){0};
     BOUGH_TRY(prepare(arena, s, point));
     define(time, point);
+    define_axes(arena, s, point);
     if (s->scene->modes.linear && point->def.spin != 0 && imbalance(s) > even) leave_transform(s, point);
     return bough_ok();
 }
@@ -232,21 +281,26 @@ static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
 }
 
-static bool is_mode(const bough_tree *tree, double point, const bough_eigen_pair *pair) {
-    return hypot(pair->real, pair->imaginary) > free_motion * point && !is_closure(tree, pair);
+static double modulus_of(const bough_eigen_pair *pair) { return hypot(pair->real, pair->imaginary); }
+
+static bool oscillates(const bough_eigen_pair *pair) { return pair->imaginary > 0.5 * modulus_of(pair); }
+
+static bool is_mode(const bough_tree *tree, double point, const bough_vibration *v, int k) {
+    bool slow = v->slow != NULL && v->slow[k];
+    return (modulus_of(&v->pair[k]) > free_motion * point || slow) && !is_closure(tree, &v->pair[k]);
 }
 
 // Number of pairs up to that of the last wanted mode.
 static int count_pairs(const bough_tree *tree, double point, int count, const bough_vibration *v) {
     int n = 0;
-    for (int kept = 0; n < v->count.found && kept < count; n++) kept += is_mode(tree, point, &v->pair[n]);
+    for (int kept = 0; n < v->count.found && kept < count; n++) kept += is_mode(tree, point, v, n);
     return n;
 }
 
 static void drop_other_motions(const bough_tree *tree, double point, int count, bough_vibration *v) {
     int kept = 0, n = count_pairs(tree, point, count, v);
     for (int k = 0; k < n; k++) {
-        if (!is_mode(tree, point, &v->pair[k])) continue;
+        if (!is_mode(tree, point, v, k)) continue;
         v->pair[kept] = v->pair[k];
         if (v->vector) v->vector[kept] = v->vector[k];
         memcpy(v->change[kept++], v->change[k], sizeof *v->change);
@@ -299,6 +353,11 @@ static void set_changes(int n_azimuth, int n, const double complex *change, boug
 
 static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
                                  const air_about *air, int count, bough_vibration *v) {
+    if (x->def.n_axes > 0)
+        return bough_fail(BOUGH_INVALID,
+                          "%.200s: modes in air that follows the motion are not computed where bodies turn "
+                          "on free, spherical or planar joints: take 'modes.air: constant'",
+                          s->scene->file);
     int wanted = v->count.wanted = count + FREE_MOTIONS, azimuths = air->changes ? air->azimuths.n : 1;
     const bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air->tangent};
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
@@ -312,24 +371,72 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     return bough_ok();
 }
 
+static bough_status find_pairs(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
+                               const air_about *air, int count, bough_vibration *v) {
+    return air->follows ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v);
+}
+
+// Finds which of the values near 0 are modes.
+static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
+                              const air_about *air, int count, bough_vibration *v) {
+    double point = x->def.point;
+    bough_vibration other = {0};
+    bough_vibration_point there = *x;
+    air_about alone = *air;
+    alone.changes = false;
+    bool doubtful = false, turns = x->def.spin != 0 || x->def.n_axes > 0;
+    for (int k = 0; k < v->count.found; k++) {
+        double part = modulus_of(&v->pair[k]) / point;
+        doubtful = doubtful || (part > slowest && part <= free_motion && oscillates(&v->pair[k]));
+    }
+    if (!doubtful) return bough_ok();
+    there.def.point *= turns ? above : below; // the series converges above
+    BOUGH_TRY(find_pairs(arena, s, &there, &alone, count, &other));
+    v->slow = bough_arena_take(arena, (size_t)v->count.found * sizeof *v->slow);
+    for (int k = 0; k < v->count.found; k++) {
+        const bough_eigen_pair *a = &v->pair[k];
+        double size = modulus_of(a);
+        bool may = size > slowest * point && oscillates(a);
+        for (int i = 0; i < other.count.found && may; i++) {
+            const bough_eigen_pair *b = &other.pair[i];
+            double off = hypot(a->real - b->real, fabs(a->imaginary) - fabs(b->imaginary));
+            v->slow[k] = v->slow[k] || off < same * size;
+        }
+    }
+    return bough_ok();
+}
+
 // The eigenvalues about the point.
 static bough_status solve_about(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
                                 const air_about *air, int count, bough_vibration *v) {
     size_t most = (size_t)(count + FREE_MOTIONS + 2 * s->tree->closure_rank);
     v->change = bough_arena_take(arena, most * sizeof *v->change);
-    BOUGH_TRY(air->follows ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v));
+    v->slow = NULL;
+    BOUGH_TRY(find_pairs(arena, s, x, air, count, v));
+    BOUGH_TRY(find_slow(arena, s, x, air, count, v));
     drop_other_motions(s->tree, x->def.point, count, v);
     return bough_ok();
+}
+
+// Aside of the real eigenvalues.
+static double clear_of(const bough_vibration *v, double point) {
+    for (int k = 0; k < v->found; k++) {
+        bool real = v->pair[k].imaginary == 0;
+        if (real && fabs(v->pair[k].real - point) < beside * point) return clear_of(v, aside * point);
+    }
+    return point;
 }
 
 // A better point on the real axis; 0 where all residuals are good or none is nearer.
 static double better_point(const bough_vibration *v, double point) {
     double lowest = HUGE_VAL, largest = 0;
     for (int k = 0; k < v->found; k++) {
-        lowest = fmin(lowest, hypot(v->pair[k].real, v->pair[k].imaginary));
+        lowest = fmin(lowest, modulus_of(&v->pair[k]));
         largest = fmax(largest, v->pair[k].residual);
     }
-    return largest > exact && lowest > nearer * point && v->found > 0 ? lowest : 0;
+    bool moves = largest > exact && lowest > nearer * point && v->found > 0;
+    double best = clear_of(v, moves ? lowest : point);
+    return best > point ? best : 0;
 }
 
 bool bough_vibration_wanted(const bough_simulation *s) {
@@ -364,7 +471,12 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     double point;
     v->asked = count;
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    BOUGH_TRY(solve_about(arena, s, x, air, count, v));
+    bough_status status = solve_about(arena, s, x, air, count, v);
+    if (status.code == BOUGH_FAILED) { // a growing motion at the point makes it singular
+        x->def.point *= aside;
+        status = solve_about(arena, s, x, air, count, v);
+    }
+    BOUGH_TRY(status);
     bool dynamic = air->follows && air->dynamic; // with other residuals
     for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x->def.point)) > 0; k++) {
         x->def.point = point;

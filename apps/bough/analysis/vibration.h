@@ -73,6 +73,7 @@ typedef struct bough_vibration {
     bough_eigen_pair *pair;            // (found)
     struct bough_mode_vectors *vector; // (found) of the same in the air; NULL: not found
     int n_azimuth;                     // over which the system is averaged; 1: the scene's azimuth alone
+    bool *slow;          // (count.found) which of the pairs near 0 are modes; NULL: none is near
     double (*change)[2]; // (found) of each mode over them, as frequency_change and damping_change
 } bough_vibration;
 

@@ -261,7 +261,7 @@ static void print_point(const sweep *s, int point, int first) {
         bough_modes_print_value(m->is.frequency, m->is.damped_frequency, m->is.damping);
         printf("%-12s %-8s %s%s%s\n", m->body, m->shape, bough_pattern_names[m->is.pattern],
                m->is.damping < -rounding ? "  unstable" : "",
-               m->is.damping_change >= fabs(m->is.damping)
+               m->is.damping_change > 0 && m->is.damping_change >= fabs(m->is.damping)
                    ? "  damping changes with the azimuth by as much as its own value"
                    : "");
     }
