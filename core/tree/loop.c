@@ -278,6 +278,7 @@ void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const
 }
 
 double bough_loops_margin(const bough_tree *tree, bough_tree_data *d, int *closure) {
+    static const double risen = 1e-5; // rows that always depend on others keep eigenvalues of rounding
     bough_loops *l = d->loops;
     int m = tree->n_rows, smallest = m - tree->closure_rank, row = 0;
     double largest[2];
@@ -297,6 +298,8 @@ double bough_loops_margin(const bough_tree *tree, bough_tree_data *d, int *closu
         if (fabs(vector[k]) > fabs(vector[row])) row = k;
     }
     *closure = closure_of(tree, row);
+    // a row that depended on the others at the start alone: the loop began in a singular position
+    if (smallest > 0 && l->value[smallest - 1] > risen * l->value[m - 1]) return 0;
     return l->value[smallest] / l->value[m - 1];
 }
 

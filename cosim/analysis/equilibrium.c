@@ -9,6 +9,8 @@
 // after a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
+// A state farther away, in units of its scale, has no equilibrium: nothing holds it.
+static const double far_away = 1e9;
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
 static const double small = 1e-3;    // changes after which the next step may have the same factors
@@ -135,6 +137,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_whole *whole, cons
         if (refused) continue;
         taken = report->change;
         move(&s, s.trial, s.second, state);
+        if (!(size_of(&s, state, &report->row) < far_away)) break;
         rest(def, &kinetic, state);
     }
     return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);

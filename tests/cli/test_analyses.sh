@@ -126,6 +126,17 @@ statics() {
     ! grep -q unstable ../stderr || fail "$said: $(cat ../stderr)"
     near ../stdout '^lineTipZ: ' 2 -0.99926 0.0001
     rm -r thin
+    # a shaft that turns and slides: the spring of 200 N/m holds its weight
+    expect 0 static "$blade" --out slides --set 'bodies=[{name: r, fidelity: rigid, mass: 2, inertia: [1, 1, 1],
+        joint: {kind: cylindrical, parent: ground, axis: z, angular_speed: 3 rad/s}}]' --set 'gravity=[0, 0, -10]' \
+        --set 'springs=[{name: s, from: ground, to: r, from_point: [0, 0, -1], stiffness: 200, length: 1}]' \
+        --set 'loads=null'
+    near ../stdout '^rPos: ' 2 -0.1 1e-9
+    rm -r slides
+    # a damper holds nothing
+    expect 3 static "$blade" --out failed --set 'bodies=[{name: r, fidelity: rigid, mass: 2, inertia: [1, 1, 1],
+        joint: {kind: prismatic, parent: ground, axis: z, damping: 5}}]' --set 'loads=null' --set 'gravity=[0, 0, -10]'
+    has ../stderr "no equilibrium found .*nothing but loads holds the joint of 'r'"
     expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \
         --set 'loads=[{body: blade, at: tip, moment: [0, 1e9, 0]}]'
     has ../stderr '^bough: error: blade: no equilibrium found .*: the rod folds, .* none found with up to 16 times the segments'

@@ -191,6 +191,7 @@ checks() {
     has ../stderr "^--set: warning: body 'beam': the direction of this follower errs by about 0.006 rad"
     expect 0 check "$beam" --set 'bodies[beam].rod.segments=10' --set "loads=[{body: beam, at: 0.4 m, $couple"
     [ ! -s ../stderr ] || fail "a warning for a follower on a vertex"
+    refused 'error: base: bases are read before' check "$bar" --set base=none.yaml
     refused 'at most 1e+09 are taken' check "$bar" --set 'simulation.duration=1e30 s'
     expect 0 check "$scenes/joints.yaml"
     has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'

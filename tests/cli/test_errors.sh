@@ -155,6 +155,27 @@ END
 run 0 'whipTipZ errs by 0\.0[67][0-9]* m' whip.yaml
 grep -q '"source": "companion"' out/summary.json || fail 'the companion of the whip'
 
+# What no estimate contains: a bushing beyond half a turn, a spring whose ends meet, a loop that begins on one line.
+cat >turned.yaml <<'END'
+simulation: {duration: 0.3 s, macro_step: 10 ms}
+bodies:
+  - {name: a, fidelity: rigid, mass: 1, inertia: [0.1, 0.1, 0.1], joint: {kind: revolute, parent: ground, axis: z, speed: 10 rad/s}}
+bushings: [{name: u, from: ground, to: a, rotational_stiffness: [0, 0, 1]}]
+END
+run 0 'warning: a at 0.2[0-9]* s: a bushing on it is turned by 13[5-9]' turned.yaml
+run 0 'warning: a at 0 s: the ends of a spring on it meet' turned.yaml --set bushings=null \
+    --set 'springs=[{name: s, from: ground, to: a, stiffness: 10, length: 2}]'
+cat >folded.yaml <<'END'
+simulation: {duration: 0.2 s, macro_step: 10 ms}
+bodies:
+  - {name: crank, mass: 1, inertia: [0.1, 0.1, 0.1], fidelity: rigid, joint: {kind: revolute, axis: y, parent: ground, angle: 90 deg, speed: 2 rad/s}}
+  - {name: rod, mass: 1, inertia: [0.1, 0.1, 0.1], fidelity: rigid, joint: {kind: revolute, axis: y, parent: crank, placement: [move z 1 m], angle: -90 deg}}
+  - {name: rocker, mass: 1, inertia: [0.1, 0.1, 0.1], fidelity: rigid, joint: {kind: revolute, axis: y, parent: ground, placement: [move x 1 m], angle: 90 deg}}
+closures:
+  - {name: pin, kind: revolute, axis: y, from: rod, from_placement: [move x 1 m], to: rocker, to_placement: [move z 1 m]}
+END
+run 0 'its closed loop is near a singular position' folded.yaml
+
 # What precedes simulation.output.from does not count.
 run 0 '^largest errors: ' whip.yaml --set simulation.output.from='0.5 s'
 

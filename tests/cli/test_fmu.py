@@ -67,7 +67,7 @@ class Instance:
         resources = (folder.name + "/x/resources/").encode()
         token = (token or root.get("instantiationToken")).encode()
         self.pointer = library.fmi3InstantiateCoSimulation(
-            b"one", token, resources, False, True, False, False, None, SIZE(0), None, self.log, None)
+            b"one", token, resources, False, False, False, False, None, SIZE(0), None, self.log, None)
         self.pointer = self.pointer and ctypes.c_void_p(self.pointer)
 
     def start(self, stop=None, start=0):

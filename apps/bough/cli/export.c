@@ -370,6 +370,9 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     }
     bough_options named = *options;
     named.operand = options->operands[1];
+    for (int k = 0; k < options->set.n; k++) // each is a line of a file
+        if (strchr(options->set.text[k], '\n') != NULL)
+            return bough_fail(BOUGH_INVALID, "export: --set %d has a line break", k + 1);
     BOUGH_TRY(bough_find_scene(arena, &named));
     export x = {.arena = arena, .options = &named};
     BOUGH_TRY(bough_open(arena, &named, &x.simulation));

@@ -21,7 +21,6 @@ typedef struct instance {
     char *scene;
     char **set; // (n_set), with room for MORE_SETTINGS of a longer run
     int n_set;
-    bool logging;
     fmi3_log *log;
     fmi3_environment environment;
 } instance;
@@ -35,11 +34,11 @@ typedef struct state {
 
 // -- messages -------------------------------------------------------------------------------------
 
-// Logs why a call fails.
+// Logs why a call fails: the standard has errors logged always.
 __attribute__((format(printf, 2, 3))) static fmi3_status fail(const instance *x, const char *format, ...) {
     char text[2400];
     BOUGH_PRINT(text, format);
-    if (x->log && x->logging) x->log(x->environment, FMI3_ERROR, "logStatusError", text);
+    if (x->log) x->log(x->environment, FMI3_ERROR, "logStatusError", text);
     return FMI3_ERROR;
 }
 
@@ -55,9 +54,7 @@ static fmi3_status misplaced(const instance *x, const char *function) {
 const char *fmi3GetVersion(void) { return "3.0"; }
 
 fmi3_status fmi3SetDebugLogging(fmi3_instance self, bool on, size_t n, const fmi3_string *category) {
-    (void)n;
-    (void)category;
-    ((instance *)self)->logging = on;
+    (void)self, (void)on, (void)n, (void)category;
     return FMI3_OK;
 }
 
@@ -113,19 +110,17 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
                                           const fmi3_reference *intermediate, size_t n_intermediate,
                                           fmi3_environment environment, fmi3_log *log,
                                           fmi3_intermediate *update) {
-    (void)visible, (void)early_return, (void)intermediate, (void)n_intermediate, (void)update;
+    (void)visible, (void)logging, (void)early_return, (void)intermediate, (void)n_intermediate, (void)update;
     instance *x = calloc(1, sizeof *x);
     if (!x) return NULL;
-    *x = (instance){.logging = logging, .log = log, .environment = environment};
+    *x = (instance){.log = log, .environment = environment};
     bool good = false;
     if (!resources || !token || !read_resources(x, resources, token)) {
-        x->logging = true;
         fail(x, "%s: the resources are not those of this FMU", name ? name : "");
     } else if (event_mode) {
         fail(x, "the FMU has no event mode");
     } else {
         good = open_session(x);
-        x->logging = x->logging || !good;
         if (!good && x->session) fail(x, "%s", bough_session_error(x->session));
     }
     if (good) return x;
@@ -335,13 +330,13 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
 // -- functions of the standard that the FMU does not offer ----------------------------------------
 
 // The standard's functions that a co-simulation FMU of real numbers, without events, clocks and
-// derivatives, must export but does not support: each returns an error.
+// derivatives, must export but does not support: each logs and returns an error.
 
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
 #define NONE(name, ...)                                                                                      \
     FMI3_API fmi3_status name(__VA_ARGS__);                                                                  \
-    fmi3_status name(__VA_ARGS__) { return FMI3_ERROR; }
+    fmi3_status name(__VA_ARGS__) { return fail(self, "%s: not supported", #name); }
 
 #define SELF fmi3_instance self
 #define REFERENCES SELF, const fmi3_reference *reference, size_t n

@@ -20,17 +20,22 @@ void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *asse
     bough_simulation_update(s);
 }
 
-// The tree's states are the first of all.
+// The tree's states are the first of all. Of a cylindrical joint, whose speeds are the rates of its
+// coordinates, one each may be held.
 int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
     int n = 0;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         const double *speed = tree->initial + tree->n_q + link->first_speed;
-        bool held = link->motion != NULL;
-        for (int k = 0; k < link->n_speeds; k++) held = held || (turning && speed[k] != 0);
-        if (!held) continue;
-        for (int k = 0; k < link->n_coordinates; k++) row[n++] = link->first_coordinate + k;
-        for (int k = 0; k < link->n_speeds; k++) row[n++] = tree->n_q + link->first_speed + k;
+        bool given = link->motion != NULL, moves = false;
+        bool separate = link->joint.kind == BOUGH_JOINT_CYLINDRICAL;
+        for (int k = 0; k < link->n_speeds; k++) moves = moves || (turning && speed[k] != 0);
+        for (int k = 0; k < link->n_coordinates + link->n_speeds; k++) {
+            bool rate = k >= link->n_coordinates;
+            int own = rate ? k - link->n_coordinates : k;
+            if (!given && !(moves && (!separate || speed[own] != 0))) continue;
+            row[n++] = rate ? tree->n_q + link->first_speed + own : link->first_coordinate + own;
+        }
     }
     return n;
 }

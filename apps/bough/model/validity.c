@@ -2,6 +2,8 @@
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/equilibrium.h"
+#include "core/base/rotation.h"
+#include "core/tree/force.h"
 #include "core/tree/loop.h"
 #include "cosim/whole.h"
 
@@ -32,6 +34,8 @@ static const double least_along = 0.5;
 // a hundred), takes some seconds.
 static const double many_steps = 100, most_work = 3e6;
 static const int least_states = 100;
+// Largest rotation of a bushing, and distance of a spring's ends over its length without force.
+static const double most_bushing = 0.75 * BOUGH_PI, least_spring = 1e-6;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence contains the value in its unit.
@@ -66,6 +70,10 @@ static const struct {
         "it turns by %.3g deg between two samples of the air, which miss what changes within a rotation: take a higher aero.rate"},
     [BOUGH_LIMIT_START] = {"unstable_start",
         "the equilibrium from which the run starts is unstable: small disturbances, which the error estimate does not contain, grow at %.3g 1/s"},
+    [BOUGH_LIMIT_BUSHING] = {"bushing_turn",
+        "a bushing on it is turned by %.4g deg: its moments follow the rotation vector, which at 180 deg jumps to the other side"},
+    [BOUGH_LIMIT_SPRING] = {"spring_ends",
+        "the ends of a spring on it meet: the force of a spring that is shorter than without force has no direction there; distance %.2g m"},
     [BOUGH_LIMIT_STEPS] = {"solver_steps",
         "most of the cost comes from motions so fast that a solver takes %.3g steps in a macro step: damping, a larger rtol or another solver (radau5, cvode-bdf) may help"},
     [BOUGH_LIMIT_FAST] = {"fast_vibrations",
@@ -196,6 +204,46 @@ static void check_closures(bough_simulation *s) {
     pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
 }
 
+// A body on one end of a connector.
+static int body_on(const bough_simulation *s, bough_scene_connector_kind kind, int k) {
+    const int *body = s->scene->connector[kind][k].body;
+    return body[body[1] != BOUGH_GROUND];
+}
+
+static void check_bushings(bough_simulation *s) {
+    const bough_tree *tree = s->tree;
+    for (int k = 0; k < tree->n_bushings; k++) {
+        const bough_bushing_def *b = &tree->bushings[k];
+        bough_mat3 r[2];
+        for (int end = 0; end < 2; end++)
+            r[end] = bough_tree_frame_pose(s->view, &tree->markers[b->marker[end]]).rotation;
+        bough_mat3 between = bough_mat3_product(bough_mat3_transpose(r[0]), r[1]);
+        double turn = bough_norm(bough_quaternion_logarithm(bough_quaternion_of_matrix(between)));
+        bool acts = false;
+        for (int c = 3; c < 6; c++) acts = acts || b->stiffness[c] != 0;
+        if (acts && turn > most_bushing)
+            pass(s->validity, BOUGH_LIMIT_BUSHING, body_on(s, BOUGH_SCENE_BUSHING, k), s->master->time,
+                 turn / BOUGH_DEGREE);
+    }
+}
+
+static void check_springs(bough_simulation *s) {
+    for (int k = 0; k < s->tree->n_springs; k++) {
+        const bough_spring_def *spring = &s->tree->springs[k];
+        bough_vec3 direction;
+        double tension, length = bough_tree_spring(s->tree, s->view, k, &tension, &direction);
+        if (spring->stiffness != 0 && length < least_spring * spring->length)
+            pass(s->validity, BOUGH_LIMIT_SPRING, body_on(s, BOUGH_SCENE_SPRING, k), s->master->time, length);
+    }
+}
+
+static void check_elements(bough_simulation *s) {
+    if (bough_tree_n_elements(s->tree) == 0) return;
+    bough_simulation_update(s);
+    check_bushings(s);
+    check_springs(s);
+}
+
 // -- at the start ---------------------------------------------------------------------------------
 
 static double azimuth(const bough_simulation *s, int blade) {
@@ -252,6 +300,7 @@ void bough_validity_start(bough_simulation *s) {
     if (s->scene->turbine.node) check_rotor(s);
     if (s->aero) check_wind(s);
     check_mesh(s);
+    check_elements(s);
 }
 
 // The body of that name, which a blank and "end" may follow: the tree calls the end of a rod so.
@@ -279,6 +328,7 @@ void bough_validity_check_equilibrium(bough_simulation *s) {
 
 void bough_validity_check(bough_simulation *s) {
     if (s->tree->n_closures > 0) check_closures(s);
+    check_elements(s);
     if (s->aero) check_air(s);
     if (s->aero) check_rotation(s);
     check_turns(s);

@@ -20,6 +20,8 @@ typedef enum bough_limit {
     BOUGH_LIMIT_START,       // the equilibrium from which the run starts is unstable
     BOUGH_LIMIT_STEPS,       // short steps of a solver take most of the time
     BOUGH_LIMIT_FAST,        // vibrations are too fast for the run and for the finer solution beside it
+    BOUGH_LIMIT_BUSHING,     // a bushing is turned so far that its rotation vector soon changes its sign
+    BOUGH_LIMIT_SPRING,      // the ends of a spring meet, so that its force has no direction
     BOUGH_LIMITS,
 } bough_limit;
 

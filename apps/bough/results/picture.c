@@ -13,6 +13,7 @@ void bough_picture_begin(FILE *svg, int width, int height) {
             width, height, width, height);
 }
 
+// XML has no control characters, not even escaped ones.
 void bough_picture_text(FILE *svg, const char *text) {
     for (; *text; text++) {
         switch (*text) {
@@ -20,7 +21,7 @@ void bough_picture_text(FILE *svg, const char *text) {
         case '<': fputs("&lt;", svg); break;
         case '>': fputs("&gt;", svg); break;
         case '"': fputs("&quot;", svg); break;
-        default: fputc(*text, svg);
+        default: fputc((unsigned char)*text < ' ' ? ' ' : *text, svg);
         }
     }
 }

@@ -117,7 +117,7 @@ static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
              [BOUGH_SCENE_IN_OPERATION] = "operation"),
      .fallback = "undeformed",
      .help = "undeformed: as the scene says; equilibrium: with the loads at time 0, joints with a "
-             "speed keep it; operation: equilibrium at the rotor speed and pitch at which the "
+             "speed keep it, free, spherical and planar ones with all their motions; operation: equilibrium at the rotor speed and pitch at which the "
              "torque of the air equals that of 'control: {kind: variable-speed}'"},
     {KEY(MAPPING, coupling), .of = &coupling_schema, .help = "the coupling scheme"},
     {KEY(MAPPING, master), .of = &master_schema,

@@ -141,6 +141,7 @@ bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *se
         return refuse(&s, length == 0 ? "expected KEY=VALUE" : "the path is too long");
     }
     memcpy(s.path, set, length);
+    if (strcmp(s.path, "base") == 0) return refuse(&s, "bases are read before: name the file in the scene");
     if (equals[1 + strspn(equals + 1, " ")] == '\0') return refuse(&s, "expected a value after '='");
     s.value = parse_value(&s, equals + 1);
     return s.value == NULL ? NULL : put(&s, root, s.path, 0);
