@@ -392,7 +392,7 @@ static const double margin = 1.1;      // of the settings that are proposed
 
 // The number of segments that divides the mesh's error by a factor, if all rods have the same; otherwise the
 // multiple.
-static void advise_mesh(const bough_scene *scene, double factor, char text[ADVICE]) {
+static void advise_mesh(const bough_scene *scene, double factor, char *text) {
     int n = 0, least = FEW;
     bool equal = true;
     for (int i = 0; i < scene->n_body; i++) {
@@ -459,15 +459,26 @@ static int describe(const bough_companion *c, const bough_error_verdict *v, char
                     c->channels->channel[v->channel].name, error, v->time);
 }
 
+// The largest error of the mesh; 0: not known.
+static double mesh_error(const bough_companion *c, const bough_error_shares *shares) {
+    const bough_error_share *share = &shares->share[BOUGH_SHARE_MESH];
+    return share->unknown[0] ? 0 : largest_of(c, share->largest);
+}
+
 static bough_status judge_excess(const bough_companion *c, const bough_error_shares *shares, double bound,
                                  const bough_error_verdict *v, char warning[BOUGH_ERROR_WARNING]) {
     const bough_scene *scene = c->run->scene;
-    char what[240], remedy[ADVICE];
-    double relative;
+    char what[240], remedy[2 * ADVICE];
+    double relative, mesh = mesh_error(c, shares);
     int cause = cause_of(c, shares, bound, &relative);
     describe(c, v, what, sizeof what);
     // without a known cause the run fails by its steps
-    advise(scene, cause < 0 ? BOUGH_SHARE_TIME : cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
+    double own = cause < 0 || relative <= bound ? v->relative : relative;
+    advise(scene, cause < 0 ? BOUGH_SHARE_TIME : cause, fmax(own / bound, 1), remedy);
+    if (cause >= 0 && cause != BOUGH_SHARE_MESH && mesh > bound) {
+        size_t length = strlen(remedy), more = (size_t)snprintf(remedy + length, ADVICE, " and ");
+        advise_mesh(scene, mesh / bound, remedy + length + more);
+    }
     if (cause < 0) {
         return bough_fail(BOUGH_FAILED,
                           "the error bound %.3g is exceeded: %s; the cause was not found: %s; try %s", bound,
