@@ -102,6 +102,16 @@ static bool any(const bough_deck *deck, const char *const *name) {
     return false;
 }
 
+// A rod bends in all directions.
+static void note_some(bough_openfast *o, const char *const *name, const char *part) {
+    bool bends = any(o->elasto, name);
+    for (; *name && bends; name++) {
+        bool known = bough_deck_line(o->elasto, *name) >= 0;
+        if (known && !bough_deck_flag_or(o->elasto, *name, false))
+            bough_other_case(o, "%s False: the %s bends that way too", *name, part);
+    }
+}
+
 static void read_shape(bough_openfast *o) {
     static const char *const blade[] = {"FlapDOF1", "FlapDOF2", "EdgeDOF", NULL};
     static const char *const tower[] = {"TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2", NULL};
@@ -119,6 +129,8 @@ static void read_shape(bough_openfast *o) {
     }
     o->rigid_blade = !o->beamdyn && !any(e, blade);
     o->rigid_tower = !any(e, tower);
+    if (!o->beamdyn) note_some(o, blade, "blade");
+    note_some(o, tower, "tower");
 }
 
 // -- writing --------------------------------------------------------------------------------------

@@ -200,7 +200,7 @@ static void put_induction(bough_openfast *o) {
         bough_approximated(o, "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in AeroDyn "
                               "before version 4");
     }
-    if (wake == 0) bough_approximated(o, "WakeMod 0: induction is computed");
+    if (wake == 0) bough_other_case(o, "WakeMod 0, no induction: it is computed");
     if (wake == 3) {
         bough_approximated(o, "OLAF: replaced by blade element momentum theory");
     }

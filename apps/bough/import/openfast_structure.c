@@ -225,9 +225,15 @@ void bough_openfast_tower(bough_openfast *o) {
     extend(o, deck, &b, "NTwInpSt");
     if (!bough_is_ok(o->draft->status)) return;
     check_rows(deck, &b, "NTwInpSt", SIDE);
-    double time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
+    slender sideways = b;
+    sideways.bending = SIDE;
+    sideways.bending_factor = side;
+    double fore_time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
+    bool has_side = bough_deck_line(deck, "TwSSM1Sh(2)") >= 0;
+    double side_time = has_side ? damping(deck, sideways, "TwrSSDmp(1)|TwrSSDmp1", "TwSSM1Sh") : fore_time;
     if (!bough_is_ok(o->draft->status)) return;
-    const double times[] = {time, time, time, time, time, time};
+    double other = fmax(fore_time, side_time); // ElastoDyn's tower does not shear, stretch and twist
+    const double times[] = {other, other, other, side_time, fore_time, other};
     FILE *file = o->draft->file[BOUGH_IMPORT_TOWER];
     bough_section_head(file, b.length, times);
     for (int i = 0; i < b.n; i++) {

@@ -161,12 +161,16 @@ static void put_teeter(bough_openfast *o, const char *shaft) {
               "angle: %.10g deg",
               shaft, -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
     if (damping > 0) bough_put(o, ", damping: %.10g", damping);
-    if (stop > 0 && stop < 90 && stiffness > 0) {
+    bool stops = stop > 0 && stop < 90 && stiffness > 0;
+    if (stops) {
         bough_put(o, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * BOUGH_DEGREE,
                   stop * BOUGH_DEGREE, stiffness);
     }
     bough_put(o, "}\n");
-    bough_taken(o, "TeetDOF: the hub teeters, with damper and hard stops");
+    bough_taken(o, "TeetDOF: the hub teeters%s%s", damping > 0 ? ", with its damper" : "",
+                stops ? ", with hard stops" : "");
+    if (bough_deck_whole_or(e, "TeetMod", 0) == 2)
+        bough_left_out(o, "TeetMod 2: the user's own routine of springs and dampers");
     bool more = bough_deck_number_or(e, "TeetCDmp", 0) != 0 || bough_deck_number_or(e, "TeetSSSp", 0) > 1;
     if (standard && (more || bough_deck_number_or(e, "TeetDmpP", 0) != 0)) {
         bough_left_out(o, "teeter: Coulomb damping, soft stops, the damper's position");

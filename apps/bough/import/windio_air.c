@@ -113,21 +113,36 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
     if (!(chord > 0)) bough_entry_fail(w->draft, a->chord.node, "chord: expected a positive value");
 }
 
+// The places of elements, in increasing order: the stations of the chord, and those at which another curve or
+// an airfoil has a point that is no closer to one of them.
+static int find_places(bough_windio *w, const bough_windio_shape *a, double **place) {
+    static const double close = 0.02, equal = 1e-6; // of the blade
+    const bough_curve *const other[] = {&a->twist, &a->thickness, &a->pitch_axis, &a->offset_x, &a->offset_y};
+    double *airfoil = bough_arena_doubles(w->draft->arena, (size_t)a->n + 1), *all;
+    for (int i = 0; i < a->n; i++) airfoil[i] = a->place[i].fraction;
+    const bough_curve of_airfoils = {.n = a->by_thickness ? 0 : a->n, .x = airfoil, .y = airfoil};
+    const bough_curve *curve[7] = {&a->chord, &of_airfoils};
+    memcpy(curve + 2, other, sizeof other);
+    int n_all = bough_curve_places(w->draft, curve, 7, equal, &all), n = 0;
+    *place = all;
+    for (int i = 0; i < n_all; i++) {
+        double at = all[i], nearest = HUGE_VAL;
+        for (int k = 0; k < a->chord.n; k++) nearest = fmin(nearest, fabs(a->chord.x[k] - at));
+        bool far = n == 0 || at - all[n - 1] >= close;
+        if (at >= 0 && at <= 1 && (nearest < equal || (nearest >= close && far))) all[n++] = at;
+    }
+    return n;
+}
+
 static void put_elements(bough_windio *w, const bough_windio_shape *a) {
-    int n = 0;
-    double last = -1;
+    double *place;
+    int n = find_places(w, a, &place);
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar, blend, share]\n"
           "  rows:\n",
           w->draft->file[BOUGH_IMPORT_AERO]);
-    for (int i = 0; i < a->chord.n && bough_is_ok(w->draft->status); i++) {
-        double at = a->chord.x[i];
-        if (at < 0 || at > 1 || at < last + 1e-6) continue;
-        put_element(w, a, at);
-        last = at;
-        n++;
-    }
+    for (int i = 0; i < n && bough_is_ok(w->draft->status); i++) put_element(w, a, place[i]);
     if (n < 2) bough_entry_fail(w->draft, a->chord.node, "chord: expected two points from 0 to 1");
-    bough_taken(w, "%d blade elements, at the stations of the chord", n);
+    bough_taken(w, "%d blade elements, at the stations of chord, twist and airfoils", n);
     bough_approximated(w, "polars between airfoils: mixed linearly by %s",
                        a->by_thickness ? "thickness" : "place");
 }

@@ -5,6 +5,8 @@
 
 enum { MOST_LAYERS = 20 };
 
+static const double least_step = 1e-6; // of the fractions at which curves have points
+
 static const double usual_damping = 5e-3; // [s]
 
 typedef struct layer {
@@ -16,6 +18,7 @@ typedef struct tube {
     int n;
     layer layer[MOST_LAYERS]; // from outside
     double mass_factor;
+    double damping[6]; // of the strains [s]
 } tube;
 
 // -- reading --------------------------------------------------------------------------------------
@@ -54,12 +57,40 @@ static void read_tube(bough_windio *w, tube *t) {
     }
     for (; layers && t->n < layers->n && bough_is_ok(w->draft->status); t->n++)
         t->layer[t->n] = read_layer(w, layers->value[t->n]);
-    if (t->n == 0) {
-        bough_approximated(w, "tower: no layers, so it is rigid");
+    bool matrices = bough_entry(from, "elastic_properties") != NULL;
+    if (t->n == 0)
+        bough_approximated(w, "tower: no layers, so it is rigid%s",
+                           matrices ? "; its matrices are not read" : "");
+    else if (matrices)
+        bough_left_out(w, "tower: its matrices; mass and stiffness are those of its layers");
+}
+
+static void read_damping(bough_windio *w, tube *t) {
+    int n = 6;
+    const bough_node *from = bough_entry(w->tower, "structure.elastic_properties");
+    bool given = bough_entry(from, "structural_damping.mu") != NULL;
+    const double *mu = given ? bough_entry_numbers(w->draft, from, "structural_damping.mu", &n) : NULL;
+    bool any = false;
+    for (int i = 0; i < 6; i++) {
+        t->damping[i] = mu ? mu[i] : usual_damping;
+        any = any || t->damping[i] > 0;
+        if (t->damping[i] < 0)
+            bough_entry_fail(w->draft, from, "structural_damping.mu: expected times that are not negative");
     }
+    for (int i = 0; i < 6 && !any; i++) t->damping[i] = usual_damping;
+    if (!given || !any)
+        bough_approximated(w, "tower: no damping given: damping coefficient of %g s assumed for all strains",
+                           usual_damping);
 }
 
 // -- writing --------------------------------------------------------------------------------------
+
+// A layer ends where its grid does.
+static double thickness_at(const layer *l, double fraction) {
+    const bough_curve *c = &l->thickness;
+    bool there = c->n > 0 && fraction > c->x[0] - least_step && fraction < c->x[c->n - 1] + least_step;
+    return there ? bough_curve_at(c, fraction) : 0;
+}
 
 // Sums the layers' rings, from outside inwards.
 static bough_section section_at(bough_windio *w, const tube *t, double fraction) {
@@ -67,7 +98,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double fraction)
     bough_section s = {.span = bough_curve_at(&w->height, fraction) - w->tower_base};
     for (int i = 0; i < t->n; i++) {
         const layer *l = &t->layer[i];
-        double thickness = bough_curve_at(&l->thickness, fraction), inner = outer - 2 * thickness;
+        double thickness = thickness_at(l, fraction), inner = outer - 2 * thickness;
         if (!(thickness >= 0) || !(inner >= 0)) {
             bough_entry_fail(w->draft, l->thickness.node,
                              "thickness: expected a value from 0 to the tower's radius, got %g m", thickness);
@@ -89,14 +120,16 @@ static bough_section section_at(bough_windio *w, const tube *t, double fraction)
 }
 
 static void put_tube(bough_windio *w, const tube *t) {
-    const double time[] = {usual_damping, usual_damping, usual_damping,
-                           usual_damping, usual_damping, usual_damping};
+    const bough_curve *curve[MOST_LAYERS + 2] = {&w->height, &w->diameter};
+    for (int i = 0; i < t->n; i++) curve[2 + i] = &t->layer[i].thickness;
+    double *place;
+    int n = bough_curve_fractions(w->draft, curve, t->n + 2, least_step, &place);
     FILE *file = w->draft->file[BOUGH_IMPORT_TOWER];
     double mass = 0;
     bough_section last = {0};
-    bough_section_head(file, w->tower_top - w->tower_base, time);
-    for (int i = 0; i < w->height.n && bough_is_ok(w->draft->status); i++) {
-        bough_section s = section_at(w, t, w->height.x[i]);
+    bough_section_head(file, w->tower_top - w->tower_base, t->damping);
+    for (int i = 0; i < n && bough_is_ok(w->draft->status); i++) {
+        bough_section s = section_at(w, t, place[i]);
         bough_section_put(file, &s);
         if (i > 0) mass += (s.span - last.span) * (s.mass + last.mass) / 2;
         last = s;
@@ -104,11 +137,8 @@ static void put_tube(bough_windio *w, const tube *t) {
     bough_taken(w,
                 "%d stations of the tower, a tube of %d layers with outfitting_factor %g; it weighs %.7g "
                 "kg",
-                w->height.n, t->n, t->mass_factor, mass);
-    bough_approximated(w,
-                       "tower: wall thickness linear between stations; shear stiffness of a thin tube; "
-                       "damping coefficient of %g s for all strains",
-                       usual_damping);
+                n, t->n, t->mass_factor, mass);
+    bough_approximated(w, "tower: wall thickness linear between stations; shear stiffness of a thin tube");
 }
 
 void bough_windio_tower(bough_windio *w) {
@@ -126,15 +156,22 @@ void bough_windio_tower(bough_windio *w) {
     if (!bough_is_ok(w->draft->status)) return;
     w->tower_base = w->height.y[0];
     w->tower_top = w->height.y[w->height.n - 1];
+    if (t.n > 0) read_damping(w, &t);
     if (t.n > 0) put_tube(w, &t);
 }
 
 void bough_windio_tower_air(bough_windio *w) {
     if (!w->tower || !bough_is_ok(w->draft->status)) return;
     bough_put(w, "  tower:\n    influence: potential\n");
-    double *wide = bough_arena_doubles(w->draft->arena, (size_t)w->height.n);
-    for (int i = 0; i < w->height.n; i++) wide[i] = bough_curve_at(&w->diameter, w->height.x[i]);
-    bough_draft_tower_list(w->draft, "height", w->height.y, 1, w->height.n);
-    bough_draft_tower_list(w->draft, "diameter", wide, 1, w->height.n);
+    const bough_curve *const curve[] = {&w->height, &w->diameter};
+    double *place;
+    int n = bough_curve_fractions(w->draft, curve, 2, least_step, &place);
+    double *high = bough_arena_doubles(w->draft->arena, 2 * (size_t)n), *wide = high + n;
+    for (int i = 0; i < n; i++) {
+        high[i] = bough_curve_at(&w->height, place[i]);
+        wide[i] = bough_curve_at(&w->diameter, place[i]);
+    }
+    bough_draft_tower_list(w->draft, "height", high, 1, n);
+    bough_draft_tower_list(w->draft, "diameter", wide, 1, n);
     bough_taken(w, "the tower's influence on the wind, without its drag");
 }

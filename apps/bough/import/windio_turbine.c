@@ -282,9 +282,17 @@ static void put_pitch(bough_windio *w, double ratio) {
               "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
               "    pitch_rate: %.10g rad/s\n",
               w->rated_speed * ratio, least, most, rate);
-    bough_left_out(w, "pitch control: the file has no gains, so the pitch is held, which is right below "
-                      "rated wind; --controller FILE, or control.pitch: true with control.law.proportional, "
-                      "integral and halving_pitch");
+    bool gains = bough_entry(w->root, "control.pitch_kp") != NULL;
+    bough_left_out(w,
+                   "pitch control: %s, so the pitch is held, which is right below rated wind; "
+                   "--controller FILE, or control.pitch: true with control.law.proportional, integral and "
+                   "halving_pitch",
+                   gains ? "the gains of the file, a table over the pitch, are not read"
+                         : "the file has no gains");
+    if (bough_entry(w->root, "control.region2_k"))
+        bough_left_out(w,
+                       "region2_k and min_pitch_table: torque below rated by the design's power coefficient, "
+                       "one least pitch");
 }
 
 static double efficiency_of(bough_windio *w) {

@@ -36,6 +36,8 @@ TEST(switched_off_motions_make_rigid_bodies) {
     assert_string_equal(text(body(&t, "blade1"), "fidelity"), "rigid");
     assert_true(list_says(&t, "\n  FlapDOF1, FlapDOF2, EdgeDOF False: the blades are rigid\n"));
     assert_false(list_says(&t, "ElastoDyn's modes"));
+    t = import(&by_modes);
+    assert_true(list_says(&t, "\n  EdgeDOF False: the blade bends that way too\n"));
     t = import(&(edit){"parts/elasto.dat", "True          TwFADOF1", "F  TwFADOF1"});
     assert_true(list_says(&t, "\n  TwFADOF1, TwFADOF2, TwSSDOF1, TwSSDOF2 False: the tower is rigid\n"));
 }

@@ -62,7 +62,9 @@ TEST(blade_keeps_line_and_matrices) {
 // Rings of 2 m and 1 m; the axis of an element stands at its share of the chord before the centre.
 TEST(tower_and_elements_are_those_of_the_file) {
     trial t = import_of("turbine-1.yaml", NULL);
-    const bough_node *foot = at(read_file(&t, "tower-structure.yaml"), "stations.rows.0");
+    const bough_node *rows_of = at(read_file(&t, "tower-structure.yaml"), "stations.rows"),
+                     *foot = rows_of->value[0];
+    assert_int_equal(rows_of->n, 3); // the diameter has one more than the height
     double pi = acos(-1.0), area = pi / 4 * (4 - 1.96 * 1.96), second = pi / 64 * (16 - pow(1.96, 4));
     check_near(number(foot, "2.2"), 2e11 * area, 1e-9, 0);
     check_near(number(foot, "2.0"), 8e10 * area / 2, 1e-9, 0);

@@ -117,7 +117,6 @@ TEST(a_run_settles_on_the_static_polar) {
             worst = fmax(worst, fabs(row[2][i] - fixed.moment));
         }
     }
-    print_message("most off the static polars: %.2g\n", worst);
     assert_true(worst < 1e-3);
 }
 

@@ -96,7 +96,6 @@ TEST(error_follows_the_tolerance_at_order_five) {
         result r = run(p, rtol, y0, half_period(2), 1);
         error[k] = hypot(r.y[0] + 2, r.y[1]);
         steps[k] = (double)r.count.steps;
-        print_message("rtol %.0e: error %.2e, %.0f steps\n", rtol, error[k], steps[k]);
         check_near(error[k], 0, 0, 10 * rtol);
     }
     check_near(log(error[0] / error[3]) / log(steps[3] / steps[0]), 5, 0, 0.4);

@@ -114,7 +114,6 @@ static double error_with(method m, double step) {
 TEST(errors_fall_with_the_order_of_the_method) {
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         double coarse = error_with(methods[k], 0.01), fine = error_with(methods[k], 0.005);
-        print_message("row %zu: errors %.2e, %.2e\n", k, coarse, fine);
         assert_true(coarse < (methods[k].order > 2 ? 1e-4 : 1));
         check_near(log2(coarse / fine), methods[k].order, 0, 0.2);
     }

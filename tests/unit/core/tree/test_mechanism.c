@@ -110,7 +110,6 @@ TEST(windows_pass_their_singular_positions) {
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         built f = built_open("apps/mechanisms/four-bar.yaml", sets_of(methods[k].set));
         run(&f, 1000);
-        print_message("%s\n", methods[k].set);
         check_near(channel(&f, "topX"), 0.328458111534, 0, methods[k].allowed);
         check_near(channel(&f, "topZ"), 0.944518538181, 0, methods[k].allowed);
         assert_true(bough_member_statistics(bough_scheme_whole(f.s->master->coupling)).steps < 100000);

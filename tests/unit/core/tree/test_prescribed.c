@@ -72,7 +72,6 @@ static void check_schemes(bool steered) {
         for (int k = 0; k < SOLVERS; k++) {
             run(schemes[i], solvers[k], "1e-6", steered, &found);
             double error = distance(&found, &exact);
-            print_message("%s with %s: %.1e\n", schemes[i], solvers[k], error);
             assert_true(error < (steered ? 1 : 200) * bound[i]);
         }
     }
@@ -90,7 +89,6 @@ TEST(monolithic_with_every_integrator) {
         for (int k = 0; k < SOLVERS; k++) {
             run("monolithic", solvers[k], "1e-7", steered, &found);
             double error = distance(&found, &exact);
-            print_message("%s: %.1e\n", solvers[k], error);
             // generalised-α has no error control: order 2 in the macro step
             assert_true(error < (strcmp(solvers[k], "generalized-alpha") == 0 ? 0.1 : 2e-4));
         }
