@@ -108,6 +108,14 @@ bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius)
     return fabs(p.y) + radius <= box->half_width && p.z + radius <= top && p.z - radius >= box->bottom;
 }
 
+void bough_wind_passes(const bough_wind *wind, bough_vec3 place, double time[2]) {
+    const bough_wind_box *box = wind->box;
+    time[0] = -HUGE_VAL, time[1] = HUGE_VAL;
+    if (!box || box->periodic) return;
+    time[0] = (to_file(wind, place).x - box->half_width) / box->mean;
+    time[1] = time[0] + box->duration;
+}
+
 // In the axes of a file, along whose x the wind blows.
 static bough_vec3 along_at(const bough_wind *wind, bough_vec3 position, double t) {
     if (wind->hub) return bough_wind_hub_at(wind->hub, to_file(wind, position), t);

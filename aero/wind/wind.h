@@ -68,6 +68,9 @@ bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bou
 // Whether a wind of a box is known all over a disk of that radius across it [m].
 bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius);
 
+// When a box that does not repeat passes a place, time[2] [s]; all times of another wind.
+void bough_wind_passes(const bough_wind *wind, bough_vec3 place, double time[2]);
+
 // The part of a table or a hub-height file that samples at equal times miss, because the wind may rise and
 // fall between two of them. Zero for other winds.
 typedef struct bough_wind_missed {

@@ -108,7 +108,7 @@ double bough_lifetime_equivalent_error(const bough_lifetime *l, int channel, int
     if (l->n_compared[l->study->n_group] == 0) return (double)NAN;
     double load = bough_equivalent_load(c->compared[slope], m, l->study->cycles);
     double larger = bough_equivalent_load(c->larger[slope], m, l->study->cycles);
-    return ratio(larger - load, load) * bough_lifetime_equivalent(l, channel, slope);
+    return ratio(fmax(larger - load, 0), load) * bough_lifetime_equivalent(l, channel, slope);
 }
 
 double bough_lifetime_extreme_error(const bough_lifetime *l, int channel, const bough_extreme *e) {

@@ -154,13 +154,19 @@ static bough_rotor_def rotor_def(bough_arena *arena, const bough_aero_link *l) {
     return def;
 }
 
-// A box must reach over the undeformed rotor.
+// A box must reach over the undeformed rotor, and pass the hub during the whole run.
 static bough_status check_reach(bough_aero_link *l) {
     const bough_scene *scene = l->simulation->scene;
+    const bough_wind *wind = bough_rotor_wind(l->rotor);
+    double passes[2];
     const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
     bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
     double radius = rotor_radius(&scene->aero);
-    if (bough_wind_covers(bough_rotor_wind(l->rotor), hub, radius)) return bough_ok();
+    bough_wind_passes(wind, hub, passes);
+    if (passes[0] > 1e-9 || passes[1] < wind->def.until * (1 - 1e-9))
+        return bough_fail(BOUGH_INVALID, "the box of %s passes the hub from %.4g to %.4g s only, of %.4g s",
+                          scene->aero.wind.def.file, passes[0], passes[1], wind->def.until);
+    if (bough_wind_covers(wind, hub, radius)) return bough_ok();
     return bough_fail(BOUGH_INVALID, "the box of %s is too small for a rotor of %g m radius at %g m",
                       scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }

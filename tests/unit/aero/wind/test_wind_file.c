@@ -175,6 +175,11 @@ TEST_WITH(box_is_interpolated, set_up, tear_down) {
     assert_false(bough_wind_covers(&wind, bough_v3(-5, 30, 70), 16));
     assert_true(bough_wind_box_lasts(wind.box, 5.5));
     assert_false(bough_wind_box_lasts(wind.box, 5.6));
+    double passes[2];
+    bough_wind_passes(&wind, bough_v3(-5, 0, 70),
+                      passes); // half a width later and 0.5 s earlier than at x = 0
+    check_near(passes[0], -5, 1e-12, 0);
+    check_near(passes[1], 5, 1e-12, 0);
 }
 
 TEST_WITH(periodic_box_repeats, set_up, tear_down) {

@@ -160,7 +160,6 @@ static double polynomial_error(int n) {
 TEST(polynomial_line_loads_converge_at_fourth_order) {
     double error[3];
     for (int k = 0; k < 3; k++) error[k] = polynomial_error(4 << k);
-    print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the tip's way\n", error[0], error[1], error[2]);
     assert_true(error[0] / error[1] > 14 && error[1] / error[2] > 14);
     assert_true(error[2] < 1e-5);
 }
@@ -178,7 +177,6 @@ TEST(tension_stiffens_the_deflection_within_a_segment) {
         solve(&b);
         error[i] = fabs(vertex(&b, n).y / exact - 1);
     }
-    print_message("8, 16, 32 segments: %.2g, %.2g, %.2g\n", error[0], error[1], error[2]);
     assert_true(error[0] < 3e-3 && error[0] / error[1] > 7 && error[1] / error[2] > 14);
 }
 
@@ -205,7 +203,6 @@ static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_v
 }
 
 static void check_fourth_order(const double error[3]) {
-    print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the length\n", error[0], error[1], error[2]);
     assert_true(error[0] / error[1] > 12 && error[1] / error[2] > 12);
 }
 
