@@ -438,6 +438,10 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
                                     bough_companion *c) {
     *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
     take(c, arena);
+    for (int i = 0; i < run->scene->n_body; i++) {
+        const bough_scene_body *body = &run->scene->body[i];
+        if (bough_scene_has_mesh(body)) c->arm = fmax(c->arm, bough_scene_arc_length(&body->rod.structure));
+    }
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");
     } else if (run->n_fmu > 0 || run->scene->control.fmu.model.description.once) {

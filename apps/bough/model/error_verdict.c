@@ -81,25 +81,12 @@ static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     return largest;
 }
 
-static double longest_rod(const bough_scene *scene) {
-    double length = 0;
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_scene_body *body = &scene->body[i];
-        if (bough_scene_has_mesh(body)) length = fmax(length, bough_scene_arc_length(&body->rod.structure));
-    }
-    return length;
-}
-
-// Whether nothing turns: neither the error nor any range of that kind matters at the arm of the longest rod,
-// as beside a rope that only stretches.
-static bool turns_nothing(const bough_companion *c, int i) {
-    static const double still = 1e-3, little = 1e-2; // of the displacements or velocities
-    const bough_channel *channel = &c->channels->channel[i];
-    double arm = longest_rod(c->run->scene);
-    bool rate = channel->kind == BOUGH_KIND_ANGULAR_VELOCITY;
-    if ((!rate && channel->kind != BOUGH_KIND_ANGLE) || arm == 0) return false;
-    double moved = kind_range(c, rate ? BOUGH_KIND_VELOCITY : BOUGH_KIND_LENGTH) / arm;
-    return kind_range(c, channel->kind) < still * moved && channel->si * c->error[i] < little * moved;
+// The largest range of that kind; of rotations no less than the displacements at the arm of the longest rod.
+static double range_of_kind(const bough_companion *c, bough_quantity_kind kind) {
+    double largest = kind_range(c, kind);
+    bool rate = kind == BOUGH_KIND_ANGULAR_VELOCITY;
+    if ((!rate && kind != BOUGH_KIND_ANGLE) || c->arm == 0) return largest;
+    return fmax(largest, kind_range(c, rate ? BOUGH_KIND_VELOCITY : BOUGH_KIND_LENGTH) / c->arm);
 }
 
 static double largest_load(const bough_companion *c) {
@@ -139,8 +126,7 @@ bool bough_error_counts(const bough_companion *c, int i) {
     bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * c->motion, least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
     if (is_force(channel) && moves <= least_load * largest_load(c)) return false;
-    if (turns_nothing(c, i)) return false;
-    return moving && moves >= least_share * kind_range(c, channel->kind);
+    return moving && moves >= least_share * range_of_kind(c, channel->kind);
 }
 
 // -- the verdict ----------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ double bough_error_range(const bough_companion *c, int channel);
 double bough_error_relative(const bough_companion *c, int channel, double error);
 
 // Whether a channel counts: not if its motion and its error are below a thousandth of other channels of its
-// kind, or rounding, nor a rotation where nothing turns.
+// kind, or rounding; of rotations also below a thousandth of displacements at the arm of the longest rod.
 bool bough_error_counts(const bough_companion *c, int channel);
 
 // The channel with the largest relative error: of motion, or of forces and moments. `error`
