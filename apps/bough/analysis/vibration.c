@@ -376,6 +376,13 @@ static bough_status find_pairs(bough_arena *arena, bough_simulation *s, const bo
     return air->follows ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v);
 }
 
+// Whether the rotor turns freely: by its own weight it has a slow motion at each azimuth, and none in the
+// mean.
+static bool rotor_is_free(const bough_simulation *s, const bough_blade_group *group) {
+    if (group->n == 0) return false;
+    return s->tree->links[s->tree->bodies[s->scene->turbine.rotor].link].motion == NULL;
+}
+
 // Finds which of the values near 0 are modes.
 static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bough_vibration_point *x,
                               const air_about *air, int count, bough_vibration *v) {
@@ -389,7 +396,7 @@ static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bou
         double part = modulus_of(&v->pair[k]) / point;
         doubtful = doubtful || (part > slowest && part <= free_motion && oscillates(&v->pair[k]));
     }
-    if (!doubtful) return bough_ok();
+    if (!doubtful || rotor_is_free(s, &x->group)) return bough_ok();
     there.def.point *= turns ? above : below; // the series converges above
     BOUGH_TRY(find_pairs(arena, s, &there, &alone, count, &other));
     v->slow = bough_arena_take(arena, (size_t)v->count.found * sizeof *v->slow);
