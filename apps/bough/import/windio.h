@@ -128,6 +128,10 @@ int bough_windio_neighbours(const bough_windio_shape *shape, double at, double *
 // The reference line's distance from the leading edge, along the chord [m].
 double bough_windio_line(const bough_windio_shape *shape, double at);
 
+// Times of damping of the six strains [s], structural_damping.mu of `from` (NULL allowed), or where that has
+// none six times `usual`, with a note about the part.
+const double *bough_windio_damping(bough_windio *w, const bough_node *from, const char *part, double usual);
+
 // Table of the blade's structure.
 void bough_windio_blade(bough_windio *w);
 

@@ -153,12 +153,11 @@ static double mass_between(const bough_windio *w, const matrices *inertia, doubl
     return sqrt(square) * (bough_curve_at(&mass, a) + bough_curve_at(&mass, b)) / 2;
 }
 
-static void put_damping(bough_windio *w, const bough_node *from) {
-    FILE *file = w->draft->file[BOUGH_IMPORT_BLADE];
-    const double usual[6] = {usual_damping, usual_damping, usual_damping,
-                             usual_damping, usual_damping, usual_damping};
+const double *bough_windio_damping(bough_windio *w, const bough_node *from, const char *part, double usual) {
     int n = 6;
-    const double *mu = usual;
+    double *assumed = bough_arena_doubles(w->draft->arena, 6);
+    const double *mu = assumed;
+    for (int i = 0; i < 6; i++) assumed[i] = usual;
     if (bough_entry(from, "structural_damping.mu"))
         mu = bough_entry_numbers(w->draft, from, "structural_damping.mu", &n);
     bool any = false;
@@ -167,13 +166,16 @@ static void put_damping(bough_windio *w, const bough_node *from) {
         if (mu[i] < 0)
             bough_entry_fail(w->draft, from, "structural_damping.mu: expected times that are not negative");
     }
-    if (!any || mu == usual) {
-        mu = usual;
-        bough_approximated(w, "blade: no damping given: damping coefficient of %g s assumed for all strains",
-                           usual_damping);
-    }
+    if (any && mu != assumed) return mu;
+    bough_approximated(w, "%s: no damping given: damping coefficient of %g s assumed for all strains", part,
+                       usual);
+    return assumed;
+}
+
+static void put_damping(bough_windio *w, const bough_node *from) {
+    FILE *file = w->draft->file[BOUGH_IMPORT_BLADE];
     fprintf(file, "length: %.10g\ndamping: ", w->blade_length);
-    bough_import_list(file, mu, 6);
+    bough_import_list(file, bough_windio_damping(w, from, "blade", usual_damping), 6);
     fputs("  # s\n", file);
     bough_section_matrix_head(file);
 }

@@ -18,7 +18,6 @@ typedef struct tube {
     int n;
     layer layer[MOST_LAYERS]; // from outside
     double mass_factor;
-    double damping[6]; // of the strains [s]
 } tube;
 
 // -- reading --------------------------------------------------------------------------------------
@@ -65,24 +64,6 @@ static void read_tube(bough_windio *w, tube *t) {
         bough_left_out(w, "tower: its matrices; mass and stiffness are those of its layers");
 }
 
-static void read_damping(bough_windio *w, tube *t) {
-    int n = 6;
-    const bough_node *from = bough_entry(w->tower, "structure.elastic_properties");
-    bool given = bough_entry(from, "structural_damping.mu") != NULL;
-    const double *mu = given ? bough_entry_numbers(w->draft, from, "structural_damping.mu", &n) : NULL;
-    bool any = false;
-    for (int i = 0; i < 6; i++) {
-        t->damping[i] = mu ? mu[i] : usual_damping;
-        any = any || t->damping[i] > 0;
-        if (t->damping[i] < 0)
-            bough_entry_fail(w->draft, from, "structural_damping.mu: expected times that are not negative");
-    }
-    for (int i = 0; i < 6 && !any; i++) t->damping[i] = usual_damping;
-    if (!given || !any)
-        bough_approximated(w, "tower: no damping given: damping coefficient of %g s assumed for all strains",
-                           usual_damping);
-}
-
 // -- writing --------------------------------------------------------------------------------------
 
 // A layer ends where its grid does.
@@ -124,10 +105,12 @@ static void put_tube(bough_windio *w, const tube *t) {
     for (int i = 0; i < t->n; i++) curve[2 + i] = &t->layer[i].thickness;
     double *place;
     int n = bough_curve_fractions(w->draft, curve, t->n + 2, least_step, &place);
+    const bough_node *matrices = bough_entry(w->tower, "structure.elastic_properties");
+    const double *times = bough_windio_damping(w, matrices, "tower", usual_damping);
     FILE *file = w->draft->file[BOUGH_IMPORT_TOWER];
     double mass = 0;
     bough_section last = {0};
-    bough_section_head(file, w->tower_top - w->tower_base, t->damping);
+    bough_section_head(file, w->tower_top - w->tower_base, times);
     for (int i = 0; i < n && bough_is_ok(w->draft->status); i++) {
         bough_section s = section_at(w, t, place[i]);
         bough_section_put(file, &s);
@@ -156,7 +139,6 @@ void bough_windio_tower(bough_windio *w) {
     if (!bough_is_ok(w->draft->status)) return;
     w->tower_base = w->height.y[0];
     w->tower_top = w->height.y[w->height.n - 1];
-    if (t.n > 0) read_damping(w, &t);
     if (t.n > 0) put_tube(w, &t);
 }
 
