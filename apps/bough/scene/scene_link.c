@@ -285,9 +285,9 @@ static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item
     }
     double length = body->rod.structure.length;
     for (int k = 0; k < sensor->n_at && length > 0; k++) {
-        if (sensor->at[k] <= length * (1 + 1e-9)) continue;
-        bough_schema_error(r, sensor->node, "at", "%g m is beyond the end of '%s', at %g m", sensor->at[k],
-                           body->name, length);
+        if (!(sensor->at[k] > length * (1 + 1e-9))) continue; // NaN: refused before
+        bough_schema_error(r, sensor->node, "at", "%.9g m is beyond the end of '%s', at %.9g m",
+                           sensor->at[k], body->name, length);
     }
 }
 

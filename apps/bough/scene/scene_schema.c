@@ -82,7 +82,8 @@ static const bough_schema output_schema = {.name = "the output", KEYS(
      .help = "time between shapes stored for ParaView, with the section loads of rods, and for "
              "`bough report`; default none"},
     {KEY(BOOLEAN, binary), .fallback = "false",
-     .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for each value"},
+     .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for each value "
+             "and equal steps, without a last row at another time"},
     {KEY(TEXTS, channels), .count = 1, COUNT_AT(n_channel), .example = "[RotSpeed, 'Root*']",
      .help = "names or patterns of the channels that are recorded; default all"},
 )};
