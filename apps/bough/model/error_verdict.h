@@ -79,7 +79,7 @@ const char *bough_error_share_name(bough_error_share_kind kind);
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares);
 
-enum { BOUGH_ERROR_WARNING = 600 };
+enum { BOUGH_ERROR_WARNING = 700 };
 
 // The error of a motion beside the bound [1]; 0: no bound. Above it BOUGH_FAILED, with channel, time, cause
 // and the setting that meets it, unless the mesh alone is the cause: then that is the warning. Else the
