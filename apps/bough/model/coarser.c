@@ -33,7 +33,7 @@ bool bough_coarser_steps_alone(const bough_scene *scene) {
     return is_one_system(scene) && scene->simulation.master.rtol < tight && !mesh && !sampled;
 }
 
-// All bodies as one system: a quarter in air whose loads follow the motion, as for an order between 2 and 3;
+// All bodies as one system: a third in air whose loads follow the motion, as at order 2;
 // two fifths without air, where vibrations do not decay and their phases and amplitudes err at a lower order;
 // three tenths for rigid bodies, beside a companion of a still larger tolerance. A coupling scheme: the
 // companion has no error of coupling, so that this error is the whole difference. It is taken as a whole for
@@ -43,7 +43,7 @@ static double usual_ratio(const bough_scene *scene) {
     const bough_scene_coupling *x = &scene->simulation.coupling;
     const bough_scheme *scheme = bough_scheme_at(x->scheme);
     if (has_fixed_steps(scene)) return 1;
-    if (scheme->one_system) return scene->aero.node ? 0.25 : bough_coarser_steps_alone(scene) ? 0.3 : 0.4;
+    if (scheme->one_system) return scene->aero.node ? 1 / 3.0 : bough_coarser_steps_alone(scene) ? 0.3 : 0.4;
     bool whole = scheme->explicit_forces || scheme->repeats || bough_jump_times(scene, 0, NULL) > 0 ||
                  bough_scheme_error_order(scheme, &x->options) == 1;
     return whole ? 1 : 0.5;
@@ -258,7 +258,7 @@ static const double loosest_beside_mesh = 2e-3, loosest_beside_whole = 3e-4;
 // Where the run's error is taken as the whole difference, the steps of the companion must err little: up to
 // twice as much as the run beside an explicit coupling; a few times as much beside a finer mesh, which would
 // otherwise cost as much as the run, and more at a tight tolerance, where the mesh causes the error.
-// Elsewhere they err by a multiple, of which the run's error is a quarter. At a tight tolerance integrators
+// Elsewhere they err by a multiple, of which the run's error is a part. At a tight tolerance integrators
 // have a high order, and each end of a macro step cuts one of their steps short: macro steps are then four
 // times as long.
 static looser looser_of(const bough_scene *scene) {
