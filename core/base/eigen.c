@@ -55,8 +55,8 @@ static void add_random(search *s) {
     bough_arnoldi_append(a, a->image);
 }
 
-// Extends the space to a dimension. It may be invariant before, as that of more equal eigenvalues than there
-// were starting vectors: another one then leads on.
+// Extends the space to a dimension. With more equal eigenvalues than starting vectors it is invariant before:
+// then it needs another one.
 static void extend(search *s, int dimension) {
     bough_arnoldi *a = &s->basis;
     for (int before = -1; a->done < dimension && a->count > before;) {

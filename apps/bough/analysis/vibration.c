@@ -15,9 +15,9 @@ static const double least_point = 1, spins = 4;
 // root of the rounding.
 static const double free_motion = 1e-3;
 
-// A slower oscillation, down to this fraction, is a mode if it is found again, to within `same`, about
-// another point, `below` or, where something turns, `above` this one: that of a free motion grows with the
-// point.
+// A slower oscillation, down to this fraction of the point, is a mode if it is found again, to within `same`,
+// about another point: `below` times the first or, where something turns, `above` times. The |λ| of a free
+// motion grows with the point.
 static const double slowest = 1e-5, below = 0.1, above = 2, same = 0.01;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
@@ -425,7 +425,7 @@ static bough_status solve_about(bough_arena *arena, bough_simulation *s, const b
     return bough_ok();
 }
 
-// Aside of the real eigenvalues.
+// The point, or one that no real eigenvalue is near.
 static double clear_of(const bough_vibration *v, double point) {
     for (int k = 0; k < v->found; k++) {
         bool real = v->pair[k].imaginary == 0;

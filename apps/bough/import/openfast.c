@@ -102,7 +102,7 @@ static bool any(const bough_deck *deck, const char *const *name) {
     return false;
 }
 
-// A rod bends in all directions.
+// Notes motions that the deck switches off and the scene has: a rod bends in all directions.
 static void note_some(bough_openfast *o, const char *const *name, const char *part) {
     bool bends = any(o->elasto, name);
     for (; *name && bends; name++) {

@@ -113,8 +113,8 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
     if (!(chord > 0)) bough_entry_fail(w->draft, a->chord.node, "chord: expected a positive value");
 }
 
-// The places of elements, in increasing order: the stations of the chord, and those at which another curve or
-// an airfoil has a point that is no closer to one of them.
+// The places of elements, in increasing order: the stations of the chord, and points of other curves and of
+// airfoils that are at least `close` away from these.
 static int find_places(bough_windio *w, const bough_windio_shape *a, double **place) {
     static const double close = 0.02, equal = 1e-6; // of the blade
     const bough_curve *const other[] = {&a->twist, &a->thickness, &a->pitch_axis, &a->offset_x, &a->offset_y};

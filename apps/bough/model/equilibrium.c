@@ -20,8 +20,8 @@ void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *asse
     bough_simulation_update(s);
 }
 
-// The tree's states are the first of all. Of a cylindrical joint, whose speeds are the rates of its
-// coordinates, one each may be held.
+// The tree's states are the first of all. The speeds of a cylindrical joint are the rates of its coordinates,
+// so that one of them alone may be held.
 int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
     int n = 0;
     for (int i = 0; i < tree->n_links; i++) {
