@@ -356,7 +356,7 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     if (x->def.n_axes > 0)
         return bough_fail(BOUGH_INVALID,
                           "%.200s: modes in air that follows the motion are not computed where bodies turn "
-                          "on free, spherical or planar joints: take 'modes.air: constant'",
+                          "on free, spherical or planar joints: take 'modes.air: frozen'",
                           s->scene->file);
     int wanted = v->count.wanted = count + FREE_MOTIONS, azimuths = air->changes ? air->azimuths.n : 1;
     const bough_aeroelastic system = {s, x->whole, &x->def, &x->group, &air->tangent};

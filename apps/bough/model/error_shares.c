@@ -468,7 +468,7 @@ static double mesh_error(const bough_companion *c, const bough_error_shares *sha
 static bough_status judge_excess(const bough_companion *c, const bough_error_shares *shares, double bound,
                                  const bough_error_verdict *v, char warning[BOUGH_ERROR_WARNING]) {
     const bough_scene *scene = c->run->scene;
-    char what[240], remedy[2 * ADVICE];
+    char what[240], remedy[2 * ADVICE + 8];
     double relative, mesh = mesh_error(c, shares);
     int cause = cause_of(c, shares, bound, &relative);
     describe(c, v, what, sizeof what);
