@@ -177,6 +177,19 @@ static bool is_rope(const bough_scene *scene, int body) {
     return rod->n_segment <= MOST_OF_ROPE && h * h * root->mass * length * pull > bending;
 }
 
+// Whether the axis turns by more than an eighth of a circle over a segment of mean length: twice as much is
+// no small angle.
+static bool is_coiled(const bough_scene_rod *rod) {
+    const bough_scene_station *at = rod->structure.station;
+    double turn = 0;
+    for (int k = 2; k < rod->structure.n_station; k++) {
+        bough_vec3 before = bough_sub(at[k - 1].def.position, at[k - 2].def.position);
+        bough_vec3 after = bough_sub(at[k].def.position, at[k - 1].def.position);
+        turn += atan2(bough_norm(bough_cross(before, after)), bough_dot(before, after));
+    }
+    return turn > BOUGH_PI / 4 * rod->n_segment;
+}
+
 static int least_of(const bough_scene *scene, int body) {
     return bough_scene_blade(scene, body) >= 0 ? least_of_blades(scene) : least_segments(scene, body);
 }
@@ -192,7 +205,8 @@ static int own_segments(const bough_scene *scene, int body, bool whole) {
     int n = scene->body[body].rod.n_segment, least = least_of(scene, body);
     bool blade = bough_scene_blade(scene, body) >= 0;
     bool modal = blade ? has_modal_blades(scene) : is_modal(scene, body);
-    if (modal || has_short_pulses(scene) || is_rope(scene, body)) return finer_segments(scene, body);
+    if (modal || has_short_pulses(scene) || is_rope(scene, body) || is_coiled(&scene->body[body].rod))
+        return finer_segments(scene, body);
     if (blade && n >= SOME_SEGMENTS && least < LEAST_IN_AIR) least = LEAST_IN_AIR;
     return other_number(n, least, whole);
 }
