@@ -15,9 +15,9 @@ static const double least_point = 1, spins = 4;
 // root of the rounding.
 static const double free_motion = 1e-3;
 
-// A slower oscillation, down to this fraction of the point, is a mode if it is found again, to within `same`,
-// about another point: `below` times the first or, where something turns, `above` times. The |λ| of a free
-// motion grows with the point.
+// A slower oscillation or growth, down to this fraction of the point, is a mode if it is found again, to
+// within `same`, about another point: `below` times the first or, where something turns, `above` times. The
+// |λ| of a free motion grows with the point.
 static const double slowest = 1e-5, below = 0.1, above = 2, same = 0.01;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
@@ -45,27 +45,23 @@ static void set_value(const bough_eigen_pair *pair, const double change[2], boug
 
 static const double at_rest = 1e-9; // [rad/s]
 
-// Whether something rotates that is no rotor with a multi-blade transform: the system is then that of one
-// azimuth.
+// Whether something rotates while no multi-blade transform is used: the system is that of one azimuth.
 static bool is_frozen(const bough_simulation *s, const bough_blade_group *group) {
-    bough_vec3 spin = {0, 0, 0};
-    if (group->n > 0) {
-        const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
-        spin = bough_tree_frame_velocity(s->view, rotor).angular;
-    }
-    for (int i = 0; i < s->tree->n_links; i++) {
-        bough_transform pose = s->view->pose[i];
-        bough_vec3 w = bough_mat3_mul(pose.rotation, s->view->twist[i].angular);
-        double other = bough_norm(bough_sub(w, spin));
-        if (fmin(bough_norm(w), other) > at_rest) return true;
-    }
-    return false;
+    bool turns = false;
+    for (int i = 0; i < s->tree->n_links; i++)
+        turns = turns || bough_norm(s->view->twist[i].angular) > at_rest;
+    return turns && group->n == 0;
 }
 
 // -- periodic systems -----------------------------------------------------------------------------
 
-// A larger relative change of the solutions of the linear system is no rounding.
-static const double constant = 1e-5;
+// A larger relative change of the solutions of the linear system is no rounding. Beside equal blades, whose
+// deflection is their mean, a larger one is allowed: the tower of a turbine under its thrust causes 1.5e-4.
+static const double constant = 1e-5, even = 1e-3;
+
+// Least ratio of the angular frequencies at which the linear system is checked: the solutions near one hardly
+// depend on what causes much faster and much slower motions.
+static const double farther = 3;
 
 static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibration_point *x) {
     const bough_assembly *a = s->master->assembly;
@@ -166,93 +162,78 @@ static void move_on(const bough_tree *tree, double fastest, double angle, double
     for (int step = 0; step < STEPS; step++) advance(tree, angle / fastest / STEPS, rate, state);
 }
 
-// (I − γJ)⁻¹ of a vector with all motions in it.
+// (I − γJ)⁻¹ of a vector with all motions in it, those of equal blades alike.
 static bough_status respond(const bough_simulation *s, const bough_vibration_point *x, double time,
-                            const double *state, double *work, double *response) {
+                            double gamma, const double *state, double *work, double *response) {
     const bough_assembly *a = s->master->assembly;
+    const bough_blade_group *g = &x->group;
     bough_assembly_scales(a, response);
     for (int k = 0; k < a->n_state; k++) response[k] *= 1 + 0.5 * sin(k);
+    for (int k = 1; k < g->n; k++)
+        memcpy(response + g->first[k], response + g->first[0], (size_t)g->n_row * sizeof *response);
     convert(s->tree, state, false, work, response);
     bough_whole_project(x->whole, state, response);
     bough_whole_inputs(x->whole, time, state);
-    BOUGH_TRY(bough_whole_setup(x->whole, time, state, x->whole->input, 1 / x->def.point));
+    BOUGH_TRY(bough_whole_setup(x->whole, time, state, x->whole->input, gamma));
     bough_whole_solve(x->whole, response);
     bough_whole_project(x->whole, state, response);
     convert(s->tree, state, true, work, response);
     return bough_ok();
 }
 
-static bough_status refuse(const bough_simulation *s, double change) {
-    return bough_fail(
-        BOUGH_INVALID,
-        "%.200s: the linear system changes by %.2g of itself as the bodies turn (a rotor with two or unequal blades, with blades on hinges, or out of balance): its solutions are periodic (Floquet) and not computed; take 'modes.linear: true' for the system at the present azimuth, or modes at rest",
-        s->scene->file, change);
-}
-
-// Compares the tangent of the present state with those after rotation by two angles: they differ if a rotor
-// of two blades, or an unbalanced one, is on a flexible support.
-static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
-                                   const bough_vibration_point *x) {
+// Compares the linear system at the present state with those after rotation by two angles, by its solutions
+// about a point of the real axis [1/s]: the largest relative change. They differ if a rotor of two blades, or
+// an unbalanced one, is on a flexible support. With equal blades, which exchange their parts, those of the
+// other bodies are compared.
+static bough_status find_change(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
+                                double point, double *largest) {
     static const double angles[] = {1, 2.3};
-    size_t n = (size_t)s->master->assembly->n_state;
-    double *state, *work, *present, *turned, *scale, fastest = fastest_joint(s);
+    const bough_assembly *a = s->master->assembly;
+    size_t n = (size_t)a->n_state;
+    double *state, *work, *present, *turned, *scale, *input, fastest = fastest_joint(s);
+    *largest = 0;
+    if (fastest < at_rest) return bough_ok();
     bough_arena_each(arena, n + 1, &state, &work, &present, &turned, &scale);
-    bough_assembly_scales(s->master->assembly, scale);
+    input = bough_arena_copy(arena, x->whole->input, (size_t)a->n_input * sizeof *input);
+    bough_assembly_scales(a, scale);
+    for (int k = 0; k < x->group.n * x->group.n_row; k++) scale[x->group.row[k]] = HUGE_VAL;
     bool driven = false; // by given motions, which go on with time
     for (int i = 0; i < s->tree->n_links; i++) {
         double speed = bough_norm(s->view->joint_twist[i].angular);
         driven = driven || (s->tree->links[i].motion != NULL && speed > at_rest);
     }
-    BOUGH_TRY(respond(s, x, x->def.time, x->state, work, present));
+    BOUGH_TRY(respond(s, x, x->def.time, 1 / point, x->state, work, present));
     for (int k = 0; k < 2; k++) {
-        double change = 0, size = 0;
+        double time = x->def.time + (driven ? angles[k] / fastest : 0), change = 0, size = 0;
         memcpy(state, x->state, n * sizeof *state);
         move_on(s->tree, fastest, angles[k], work, state);
-        BOUGH_TRY(respond(s, x, x->def.time + (driven ? angles[k] / fastest : 0), state, work, turned));
+        BOUGH_TRY(respond(s, x, time, 1 / point, state, work, turned));
         for (size_t i = 0; i < n; i++) {
             change = fmax(change, fabs(turned[i] - present[i]) / scale[i]);
             size = fmax(size, fabs(present[i]) / scale[i]);
         }
-        if (change > constant * size) return refuse(s, change / size);
+        *largest = fmax(*largest, change / size);
     }
-    bough_whole_inputs(x->whole, x->def.time, x->state);
+    bough_whole_inputs(x->whole, x->def.time,
+                       x->state); // the motion of the bodies is that of the state again
+    memcpy(x->whole->input, input, (size_t)a->n_input * sizeof *input);
     return bough_ok();
 }
 
-// Relative change of the inertia of a rotating hub, whose effect is small beside that of the azimuth.
-static const double even = 1e-3;
-
-// Inertia of all bodies on the rotor, about its centre, in ground axes.
-static bough_inertia turning_inertia(const bough_simulation *s, int rotor, bough_vec3 centre) {
-    bough_inertia sum = {0};
-    for (int i = rotor; i < s->tree->n_links; i++) {
-        int root = i;
-        while (root > rotor) root = s->tree->links[root].parent;
-        if (root != rotor) continue;
-        bough_transform pose = s->view->pose[i];
-        pose.position = bough_sub(pose.position, centre);
-        sum = bough_inertia_add(sum, bough_inertia_to_parent(&pose, s->tree->links[i].inertia));
-    }
-    return sum;
+static bool is_constant(const bough_vibration_point *x, double change) {
+    return change <= (x->group.n > 0 ? even : constant);
 }
 
-// Equal blades make the system constant only if the inertia of the hub is the same at every azimuth, or its
-// shaft cannot move: the relative change of that inertia over a rotation of 1 rad.
-static double imbalance(const bough_simulation *s) {
-    int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
-    bool moves = false;
-    for (int i = s->tree->links[rotor].parent; i >= 0; i = s->tree->links[i].parent)
-        moves = moves || s->tree->links[i].motion == NULL;
-    if (!moves) return 0;
-    bough_vec3 axis = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
-    bough_transform turn = {{0, 0, 0}, bough_rotation_matrix(bough_quaternion_exponential(axis))};
-    bough_inertia here = turning_inertia(s, rotor, s->view->pose[rotor].position);
-    bough_inertia there = bough_inertia_to_parent(&turn, here);
-    const bough_mat3 a = here.rotational, b = there.rotational;
-    double size = a.c1.x + a.c2.y + a.c3.z, off = bough_norm(bough_sub(here.first, there.first));
-    double change = fmax(bough_norm(bough_sub(a.c1, b.c1)),
-                         fmax(bough_norm(bough_sub(a.c2, b.c2)), bough_norm(bough_sub(a.c3, b.c3))));
-    return size > 0 ? fmax(change / size, off / sqrt(here.mass * size)) : 0;
+static bough_status check_constant(bough_arena *arena, const bough_simulation *s,
+                                   const bough_vibration_point *x, double point) {
+    double change;
+    if (s->scene->modes.linear) return bough_ok();
+    BOUGH_TRY(find_change(arena, s, x, point, &change));
+    if (is_constant(x, change)) return bough_ok();
+    return bough_fail(
+        BOUGH_INVALID,
+        "%.200s: the linear system changes by %.2g of itself as the bodies turn (a rotor with two or unequal blades, with blades on hinges, with springs or other moving bodies on it, or out of balance): its solutions are periodic (Floquet) and not computed; take 'modes.linear: true' for the system at the present azimuth, or modes at rest",
+        s->scene->file, change);
 }
 
 // Uses the present azimuth, with the deflection of each blade there.
@@ -269,7 +250,10 @@ bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s,
     BOUGH_TRY(prepare(arena, s, point));
     define(time, point);
     define_axes(arena, s, point);
-    if (s->scene->modes.linear && point->def.spin != 0 && imbalance(s) > even) leave_transform(s, point);
+    if (!s->scene->modes.linear || point->def.spin == 0) return bough_ok();
+    double change;
+    BOUGH_TRY(find_change(arena, s, point, point->def.point, &change));
+    if (!is_constant(point, change)) leave_transform(s, point);
     return bough_ok();
 }
 
@@ -284,6 +268,11 @@ static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
 static double modulus_of(const bough_eigen_pair *pair) { return hypot(pair->real, pair->imaginary); }
 
 static bool oscillates(const bough_eigen_pair *pair) { return pair->imaginary > 0.5 * modulus_of(pair); }
+
+// A decay without oscillation matters to nobody.
+static bool may_be_slow(const bough_eigen_pair *pair, double point) {
+    return modulus_of(pair) > slowest * point && (oscillates(pair) || pair->real > 0);
+}
 
 static bool is_mode(const bough_tree *tree, double point, const bough_vibration *v, int k) {
     bool slow = v->slow != NULL && v->slow[k];
@@ -393,8 +382,8 @@ static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bou
     alone.changes = false;
     bool doubtful = false, turns = x->def.spin != 0 || x->def.n_axes > 0;
     for (int k = 0; k < v->count.found; k++) {
-        double part = modulus_of(&v->pair[k]) / point;
-        doubtful = doubtful || (part > slowest && part <= free_motion && oscillates(&v->pair[k]));
+        bool small = modulus_of(&v->pair[k]) <= free_motion * point;
+        doubtful = doubtful || (small && may_be_slow(&v->pair[k], point));
     }
     if (!doubtful || rotor_is_free(s, &x->group)) return bough_ok();
     there.def.point *= turns ? above : below; // the series converges above
@@ -403,8 +392,7 @@ static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bou
     for (int k = 0; k < v->count.found; k++) {
         const bough_eigen_pair *a = &v->pair[k];
         double size = modulus_of(a);
-        bool may = size > slowest * point && oscillates(a);
-        for (int i = 0; i < other.count.found && may; i++) {
+        for (int i = 0; i < other.count.found && may_be_slow(a, point); i++) {
             const bough_eigen_pair *b = &other.pair[i];
             double off = hypot(a->real - b->real, fabs(a->imaginary) - fabs(b->imaginary));
             v->slow[k] = v->slow[k] || off < same * size;
@@ -462,11 +450,9 @@ static bough_status settle(bough_arena *arena, bough_simulation *s, bough_vibrat
     if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, NULL));
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, x));
     v->spin = fabs(x->group.speed) < at_rest ? 0 : x->group.speed;
-    double uneven = x->def.spin != 0 ? imbalance(s) : 0;
-    if (uneven > even) return refuse(s, uneven);
     v->n_blade = x->group.n;
     v->frozen = is_frozen(s, &x->group);
-    if (v->frozen && !s->scene->modes.linear) BOUGH_TRY(check_constant(arena, s, x));
+    BOUGH_TRY(check_constant(arena, s, x, x->def.point));
     BOUGH_TRY(find_air(arena, s, v->time, x, air));
     v->n_azimuth = air->azimuths.n;
     return bough_ok();
@@ -494,6 +480,19 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
     return bough_ok();
 }
 
+// The linear system is constant also at the frequencies of the modes.
+static bough_status check_modes(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
+                                const bough_vibration *v) {
+    double last = x->def.point;
+    for (int k = 0; k < v->found; k++) {
+        double at = 2 * BOUGH_PI * v->mode[k].frequency;
+        if (at < farther * last && (at <= last || k < v->found - 1)) continue;
+        last = at;
+        BOUGH_TRY(check_constant(arena, s, x, at));
+    }
+    return bough_ok();
+}
+
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count, bough_vibration *v) {
     bough_vibration_point x;
     air_about air = {.changes = true};
@@ -501,6 +500,7 @@ bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int c
     bough_arena *of_air = bough_arena_child(arena);
     BOUGH_TRY(settle(of_air, s, v, &x, &air));
     BOUGH_TRY(solve(arena, s, count, &x, &air, v));
+    BOUGH_TRY(check_modes(of_air, s, &x, v));
     bough_arena_destroy(of_air);
     return bough_ok();
 }

@@ -179,7 +179,7 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     printf("whole scene: %d states, about %s", s->master->assembly->n_state,
            s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
     if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin / BOUGH_RPM);
-    if (v->frozen) printf(", at the present azimuth: blades as seen from the rotating frame");
+    if (v->frozen) printf(", at the present azimuth, rotating bodies as seen in their own axes");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
     if (bough_modes_rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};

@@ -508,10 +508,11 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
                                    int last) {
     const sweep_mode *m = most_growing(s, last), *before = last > 0 ? most_growing(s, last - 1) : NULL;
     if (!grows(m) || last == 0) {
-        printf(grows(m)  ? "unstable at the first point: %s=%s\n"
-               : s->free ? "no oscillation grows up to %s=%s\n"
-                         : "nothing grows up to %s=%s\n",
-               s->key[0], s->value[last]);
+        if (grows(m))
+            printf("unstable at the first point: %s=%s\n", s->key[0], s->value[last]);
+        else
+            printf("%s grows up to %s=%s among the %d modes followed (modes.count)\n",
+                   s->free ? "no oscillation" : "nothing", s->key[0], s->value[last], s->n_line);
         return bough_ok();
     }
     growth at = {.frequency = m->is.damped_frequency,
