@@ -442,6 +442,39 @@ imported() {
     refused 'unexpected argument' import openfast main.fst more --out out
 }
 
+# A change of a deck that OpenFAST would refuse, too.
+bad_decks() {
+    cp -r "$folder/tests/data/decks" ../decks
+    while IFS='|' read -r file change message; do
+        cp "$folder/tests/data/decks/$file" ../decks/saved
+        sed -i "$change" "../decks/$file"
+        refused "$message" import openfast ../decks/main.fst --out out
+        cp ../decks/saved "../decks/$file"
+    done <<END
+main.fst|/CompServo/d|main.fst: no 'CompServo'
+main.fst|s/1    CompServo/7    CompServo/|main.fst:9: CompServo: expected a whole number from 0 to 1, got 7
+main.fst|/Gravity/d|elasto.dat: no 'Gravity'
+main.fst|s/9.81 /-9.81 /|main.fst:11: Gravity: expected 0 to 200, got -9.81
+parts/aero.dat|s/2   WakeMod/5   WakeMod/|aero.dat:3: WakeMod: expected one of 0 1 2 3, got 5
+parts/aero.dat|s/2   AFAeroMod/3   AFAeroMod/|aero.dat:4: AFAeroMod: expected one of 1 2, got 3
+parts/aero.dat|s/1   TwrPotent/3   TwrPotent/|aero.dat:5: TwrPotent: expected one of 0 1 2, got 3
+parts/aero.dat|s/0   TwrShadow/0.4   TwrShadow/|aero.dat:6: TwrShadow: expected one of 0 1 2, got 0.4
+parts/aero.dat|s/2   SkewMod/-1   SkewMod/|aero.dat:9: SkewMod: expected one of 0 1 2, got -1
+parts/aero.dat|s/1   DBEMT_Mod/9   DBEMT_Mod/|aero.dat:12: DBEMT_Mod: expected one of -1 0 1 2 3, got 9
+parts/aero.dat|s/2.5   tau1/0   tau1/|aero.dat:13: tau1_const: expected a time above 0 s, got 0
+parts/aero.dat|s/4   UAMod/99   UAMod/|aero.dat:14: UAMod: expected one of 0 1 2 3 4 5 6 7 8, got 99
+parts/aero.dat|s/4   UAMod/0   UAMod/|aero.dat:14: UAMod: expected one of 1 to 8 with AFAeroMod 2, got 0
+parts/servo.dat|s/0   PCMode/1   PCMode/|servo.dat:3: PCMode: expected one of 0 3 4 5, got 1
+parts/servo.dat|s/1   VSContrl/2   VSContrl/|servo.dat:4: VSContrl: expected one of 0 1 3 4 5, got 2
+parts/servo.dat|s/0   TimGenOn/-1   TimGenOn/|servo.dat:6: TimGenOn: expected 0 to
+parts/servo.dat|s/1   VSContrl/9 GenModel\n0 VSContrl/|servo.dat:4: GenModel: expected one of 1 2 3, got 9
+parts/elasto.dat|s/4.5    BlPitch(2)/450    BlPitch(2)/|elasto.dat:10: BlPitch(2): expected -180 to 180, got 450
+parts/wind.dat|s/0.2    PLexp/-0.2    PLexp/|wind.dat:8: PLExp: expected 0 to 1, got -0.2
+parts/wind.dat|s/0.2    PLexp/1.2    PLexp/|wind.dat:8: PLExp: expected 0 to 1, got 1.2
+parts/wind.dat|s/21    RefHt/0    RefHt/|wind.dat:7: RefHt: expected a length above 0 m, got 0
+END
+}
+
 # Two workers fill one folder, by themselves and as a Slurm array would start them.
 spread() {
     cat >../spread.yaml <<END
@@ -484,5 +517,6 @@ closed_streams
 bad_output
 shown
 imported
+bad_decks
 spread
 [ $failures -eq 0 ]

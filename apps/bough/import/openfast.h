@@ -111,11 +111,8 @@ typedef struct bough_openfast {
     double tower_base, tower_top; // above ground [m]
 } bough_openfast;
 
-// Opens the file of a module and notes its path.
+// Opens and checks the file of a module, and notes its path; from NULL: the main file, whose path is `names`.
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names);
-
-// Fails at the line of a number beyond its limits; NULL: there is no deck to check.
-void bough_openfast_check(const bough_deck *deck);
 
 // Values of a deck that a scene cannot represent, and the note on them.
 typedef struct bough_openfast_rest {

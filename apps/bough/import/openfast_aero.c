@@ -69,12 +69,16 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
+    bool given = false;
     fputs("polars:\n", o->draft->file[BOUGH_IMPORT_POLARS]);
     for (int i = 0; i < n && bough_is_ok(o->draft->status); i++) {
         bough_deck *deck = open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
         put_polar(o, deck, name[i]);
+        given = bough_deck_flag_or(deck, "InclUAdata", false) || given;
     }
+    if (given && dynamic_stall(o->aero))
+        bough_left_out(o, "InclUAdata: constants of dynamic stall beside A1, A2, b1 and b2");
     bough_taken(o, "%d airfoils: lift, drag, moment", n);
     return n;
 }
@@ -172,7 +176,7 @@ static void put_induction(bough_openfast *o) {
     int dynamic = bough_deck_whole_or(a, "DBEMT_Mod", 2);
     int skew = bough_deck_whole_or(a, "SkewMod|Skew_Mod", 1);
     bool new_skew = bough_deck_line(a, "Skew_Mod") >= 0;
-    bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
+    bool may = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0), oye = may && dynamic > 0;
     bool pitt = new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
     int balance = bough_deck_whole_or(a, "BEM_Mod", 0);
     bough_put(o,
@@ -184,8 +188,9 @@ static void put_induction(bough_openfast *o) {
     bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
     if (momentum && balance != 1) bough_put(o, ", skewed_momentum: true");
     if (oye) bough_put(o, ", inflow: oye");
-    double time = oye && dynamic != 2 ? bough_deck_number_or(a, "tau1_const", 0) : 0;
+    double time = oye && dynamic != 2 ? bough_deck_number_or(a, "tau1_const", (double)NAN) : (double)NAN;
     if (time > 0) bough_put(o, ", inflow_time: %.10g s", time);
+    if (time <= 0) bough_deck_refuse(a, "tau1_const", "expected a time above 0 s, got %g", time);
     bough_put(o, "}\n");
     if (momentum && balance == 1) {
         bough_left_out(o, "SkewMomCorr is only used with BEM_Mod 2");
@@ -201,6 +206,15 @@ static void put_induction(bough_openfast *o) {
                               "before version 4");
     }
     if (wake == 0) bough_other_case(o, "WakeMod 0, no induction: it is computed");
+    if (may && dynamic < 0) bough_other_case(o, "DBEMT_Mod -1, frozen wake: it follows the load at once");
+    if (skew == -new_skew) {
+        bough_approximated(o, "%s %d: the whole wind acts, not only its part along the shaft",
+                           new_skew ? "Skew_Mod" : "SkewMod", skew);
+    }
+    const double usual = 15 * BOUGH_PI / 32;
+    double factor = bough_deck_number_or(a, "SkewModFactor|SkewRedistrFactor", usual);
+    if (pitt && fabs(factor - usual) > 1e-3)
+        bough_approximated(o, "SkewModFactor %g: %.4g, its default", factor, usual);
     if (wake == 3) {
         bough_approximated(o, "OLAF: replaced by blade element momentum theory");
     }
@@ -211,18 +225,25 @@ static void put_induction(bough_openfast *o) {
 
 static void put_stall(bough_openfast *o) {
     const bough_deck *a = o->aero;
-    int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 0);
-    bool on = dynamic_stall(a);
+    int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 4);
+    bool on = dynamic_stall(a), rotated = bough_deck_flag_or(a, "AoA34", on);
     if (on) bough_put(o, "  dynamic_stall: hgm\n");
+    if (on && model == 0) bough_deck_refuse(a, "UAMod", "expected one of 1 to 8 with AFAeroMod 2, got 0");
+    if (on != rotated) {
+        bough_approximated(o, "AoA34 %s: the angle of attack is that at %s", rotated ? "True" : "False",
+                           on ? "three quarters of the chord" : "the aerodynamic centre");
+    }
     if (on && model != 4) {
         bough_approximated(o,
                            "UAMod %d: dynamic stall by Hansen, Gaunaa and Madsen's model (4), its "
                            "constants from the polars",
                            model);
     }
-    if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
-        bough_left_out(o, "UAStartRad: dynamic stall acts on all elements");
-    }
+    static const bough_openfast_rest rest[] = {
+        {"dynamic stall acts on all elements", 0, {"UAStartRad"}},
+        {"dynamic stall acts on all elements", 1, {"UAEndRad"}},
+    };
+    if (on) bough_openfast_leave(o, a, rest, 2, BOUGH_LEFT_OUT);
     if (!bough_deck_flag_or(a, "UseBlCm", true)) bough_put(o, "  pitching_moment: false\n");
 }
 

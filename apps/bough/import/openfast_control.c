@@ -3,47 +3,9 @@
 
 #include "aero/control/discon.h"
 
-// -- limits ---------------------------------------------------------------------------------------
-
-// Limits of the numbers of all decks, each in the unit of its line: no two decks use one name for two
-// quantities. A value beyond its limits would only be refused in the scene, which the user has not written.
-static const struct {
-    double low, high;
-    const char *names[8]; // ends with NULL
-} limits[] = {
-    {-1e4, 1e4, {"RotSpeed"}},
-    {-360, 360, {"NacYaw", "ShftTilt"}},
-    {-80, 80, {"VFlowAng"}},
-    {0.01, 1e3, {"TipRad"}},
-    {1e-3, 1e3, {"HubRad"}},
-    {1e-3, 1e4, {"GBRatio"}},
-    {-1e3, 1e3, {"HubCM", "UndSling", "OverHang", "NacCMxn", "NacCMyn", "NacCMzn", "Twr2Shft"}},
-    {-1e3, 1e4, {"TowerHt", "TowerBsHt"}},
-    {0, 1e9, {"HubMass", "GenIner", "NacMass", "YawBrMass"}},
-    {0, 1e9, {"TipMass(1)|TipMass1", "TipMass(2)|TipMass2", "TipMass(3)|TipMass3"}},
-    {0, 1e15, {"HubIner", "NacYIner"}},
-    {0, 1e20, {"TeetDmp", "TeetHSSp", "DTTorSpr", "DTTorDmp", "YawSpr", "YawDamp"}},
-    {0, 200, {"HWindSpeed"}},
-    {0, 100, {"GenEff", "BldFlDmp(1)|BldFlDmp1", "BldEdDmp(1)|BldEdDmp1"}},
-    {0, 100, {"TwrFADmp(1)|TwrFADmp1", "TwrSSDmp(1)|TwrSSDmp1"}},
-    {1e-6, 1e6, {"AdjBlMs", "AdjFlSt", "AdjEdSt", "AdjTwMa", "AdjFASt", "AdjSSSt"}},
-    {1e-6, 1e6, {"FlStTunr(1)|FlStTunr1", "FAStTunr(1)|FAStTunr1", "SSStTunr(1)|SSStTunr1"}},
-};
-
-void bough_openfast_check(const bough_deck *deck) {
-    for (size_t k = 0; k < sizeof limits / sizeof *limits && deck; k++) {
-        double low = limits[k].low, high = limits[k].high;
-        for (const char *const *names = limits[k].names; *names; names++) {
-            double value = bough_deck_number_or(deck, *names, low);
-            if (value >= low && value <= high) continue;
-            bough_deck_refuse(deck, *names, "expected %g to %g, got %g", low, high, value);
-        }
-    }
-}
-
 // -- control --------------------------------------------------------------------------------------
 
-enum { NONE, SIMPLE, LIBRARY = 5, THEVENIN = 2 };
+enum { NONE, SIMPLE, THEVENIN, USER, LIBRARY = 5 };
 
 static const double least_speed = 1e-3; // of a generator with torque [rad/s]
 
@@ -131,7 +93,9 @@ static bool stays_off(const bough_openfast *o) {
 static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
-    if (model != SIMPLE && model != THEVENIN)
+    if (model < SIMPLE || model > USER)
+        bough_deck_refuse(o->servo, "GenModel", "expected one of 1 2 3, got %d", model);
+    if (model == USER)
         keep_speed(o, bough_arena_print(o->draft->arena, "the user's generator of GenModel %d", model));
 }
 

@@ -159,7 +159,6 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
 
 void bough_openfast_blade(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "BldFile(1)|BldFile1");
-    bough_openfast_check(deck);
     if (!deck) return;
     const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff", "?EAStff"};
     int n = bough_deck_whole(deck, "NBlInpSt", 1, MOST);
@@ -209,7 +208,6 @@ enum { FORE = 2, SIDE, N_TOWER_COLUMN };
 
 void bough_openfast_tower(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "TwrFile");
-    bough_openfast_check(deck);
     if (!deck) return;
     const char *const column[] = {"HtFract", "TMassDen", "TwFAStif", "TwSSStif"};
     int n = bough_deck_whole(deck, "NTwInpSt", 1, MOST);

@@ -43,7 +43,7 @@ static void put_steady(bough_openfast *o, double speed) {
     double power = o->inflow ? bough_deck_number_or(o->inflow, "PLExp|PLexp", 0) : 0;
     bough_put(o, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
     if (power > 0) {
-        bough_put(o, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
+        bough_put(o, ", exponent: %.10g, reference_height: %.10g m", power,
                   positive(o->inflow, "RefHt", hub_height(o)));
     }
 }
@@ -112,8 +112,34 @@ static void put_hawc(bough_openfast *o, const char *path) {
     take_status(o, status);
 }
 
+// Fails where a length that a type needs is not positive.
+static void check_lengths(const bough_deck *w, int type) {
+    static const char *const name[][2] = {[STEADY] = {"RefHt"}, [UNIFORM] = {"RefHt_Uni|RefHt", "RefLength"}};
+    bough_deck section = type == UNIFORM ? section_of(w, type) : *w;
+    for (int k = 0; k < 2 && type <= UNIFORM && name[type][k]; k++) {
+        double length = bough_deck_number_or(&section, name[type][k], 1);
+        if (!(length > 0))
+            bough_deck_refuse(&section, name[type][k], "expected a length above 0 m, got %g", length);
+    }
+}
+
+// What the scene's boxes of wind do not have.
+static void leave_rest(bough_openfast *o, int type) {
+    static const bough_openfast_rest rest[] = {
+        {"the lidar", 0, {"SensorType"}},
+        {"the wind is linear between its times", 0, {"VelInterpCubic"}},
+        {"the points below the grid", 0, {"TowerFile"}},
+        {"the run starts at the beginning of the box", 0, {"XOffset"}},
+    };
+    bough_openfast_leave(o, o->inflow, rest, type == STEADY ? 1 : 2, BOUGH_LEFT_OUT);
+    if (type == BLADED || type == HAWC)
+        bough_openfast_leave(o, o->inflow, rest + (type == HAWC ? 3 : 2), 1, BOUGH_LEFT_OUT);
+}
+
 static void put_type(bough_openfast *o, int type) {
     if (!bough_is_ok(o->draft->status)) return; // no such type
+    check_lengths(o->inflow, type);
+    leave_rest(o, type);
     if (type == STEADY) {
         double speed = bough_deck_number(o->inflow, "HWindSpeed");
         put_steady(o, speed);
