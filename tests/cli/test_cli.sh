@@ -475,6 +475,53 @@ parts/wind.dat|s/21    RefHt/0    RefHt/|wind.dat:7: RefHt: expected a length ab
 END
 }
 
+# What a scene has no key for, and lines that are missing, are on the list.
+left_of_decks() {
+    rm -r ../decks
+    cp -r "$folder/tests/data/decks" ../decks
+    sed -i 's/3.01  TMax/0.01  TMax/' ../decks/main.fst
+    sed -i '/GenEff/d; s/0   PCMode/5   PCMode/; s/1   VSContrl/5   VSContrl/' ../decks/parts/servo.dat
+    cat >>../decks/parts/servo.dat <<END
+"$(dirname "$bough")/tests/libsample_discon.so"  DLL_FileName
+"other"  DLL_ProcName
+0  TPitManS(3)
+0  Ptch_Max
+90  Ptch_Min
+T  DLL_Ramp
+2  BPCutoff
+5  CCmode
+END
+    sed -i '/AdjFlSt/d; /AdjEdSt/d' ../decks/parts/blade.dat
+    sed -i 's/2    CompElast/1    CompElast/' ../decks/main.fst
+    sed -i 's/2   SkewMod/0   SkewMod/; s/4   UAMod/4   UAMod\nF  AoA34\n0.9  UAEndRad\n1.2  SkewModFactor/' ../decks/parts/aero.dat
+    sed -i 's/1   NumTabs/1   NumTabs\nTrue InclUAdata/' ../decks/parts/foils/flat.dat
+    printf '3 PtfmPitch\n2 PtfmSurge\nTrue PtfmSgDOF\n' >>../decks/parts/elasto.dat
+    echo '1 SensorType' >>../decks/parts/wind.dat
+    expect 0 import openfast ../decks/main.fst --out out
+    while read -r line; do has out/import.txt "^  $line\$"; done <<'END'
+TPitManS(3): the pitch manoeuvre of blade 3
+DLL_ProcName other: the library's function DISCON is called
+CCmode: cable control
+PtfmPitch: the platform stands upright in its place
+servo.dat has no GenEff: 100 is taken
+blade.dat has no AdjFlSt, AdjEdSt: 1 is taken
+SkewMod 0: the whole wind acts, not only its part along the shaft
+AoA34 False: the angle of attack is that at three quarters of the chord
+InclUAdata: constants of dynamic stall beside A1, A2, b1 and b2
+UAEndRad: dynamic stall acts on all elements
+Ptch_Min: this record is 0
+DLL_Ramp: demands hold from call to call
+BPCutoff 2 Hz: no filter of the pitch
+PtfmSurge: the platform stands upright in its place
+SensorType: the lidar
+END
+    sed -n '/^NOT THE MODEL/,/^taken/p' out/import.txt >../first
+    has ../first PtfmPitch
+    grep -q PtfmSurge ../first && fail "$said: PtfmSurge of a platform that moves is no other load case"
+    has ../first CCmode
+    rm -r out
+}
+
 # Two workers fill one folder, by themselves and as a Slurm array would start them.
 spread() {
     cat >../spread.yaml <<END
@@ -518,5 +565,6 @@ bad_output
 shown
 imported
 bad_decks
+left_of_decks
 spread
 [ $failures -eq 0 ]

@@ -278,6 +278,24 @@ static void put_switches(bough_openfast *o) {
 
 // -- library --------------------------------------------------------------------------------------
 
+// What ServoDyn adds to the deck's library.
+static void leave_interface(bough_openfast *o) {
+    static const char zero[] = "this record is 0";
+    static const bough_openfast_rest rest[] = {
+        {zero, 0, {"Ptch_SetPnt", "Ptch_Min", "Ptch_Max", "PtchRate_Min", "PtchRate_Max", "GenPwr_Dem"}},
+        {zero, 0, {"Gain_OM", "GenSpd_MinOM", "GenSpd_MaxOM", "GenSpd_Dem", "GenTrq_Dem", "DLL_NumTrq"}},
+        {"directions count from ground x", 0, {"NacYaw_North"}},
+        {"demands hold from call to call", 0, {"DLL_Ramp"}},
+    };
+    bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
+    double cut = bough_deck_number_or(o->servo, "BPCutoff", HUGE_VAL);
+    if (cut < 0.5 / o->draft->macro_step) bough_left_out(o, "BPCutoff %g Hz: no filter of the pitch", cut);
+    bool named = bough_deck_line(o->servo, "DLL_ProcName") >= 0;
+    const char *name = named ? bough_deck_text(o->servo, "DLL_ProcName") : "DISCON";
+    if (strcmp(name, "DISCON") != 0)
+        bough_other_case(o, "DLL_ProcName %s: the library's function DISCON is called", name);
+}
+
 static void put_library(bough_openfast *o) {
     double step = o->draft->macro_step;
     double efficiency = o->servo ? bough_deck_number_or(o->servo, "GenEff", 100) / 100 : 1;
@@ -294,6 +312,7 @@ static void put_library(bough_openfast *o) {
     if (fabs(asked - step) > 1e-9) {
         bough_approximated(o, "DLL_DT %g s: the library is called every %g s", asked, step);
     }
+    if (o->servo && !o->draft->options->controller) leave_interface(o);
 }
 
 // Manoeuvres that begin within the run.
@@ -301,8 +320,10 @@ static void note_manoeuvres(bough_openfast *o) {
     double end = bough_deck_number(o->main, "TMax");
     bool brake = bough_deck_whole_or(o->servo, "HSSBrMode", 1) != 0;
     bool library = o->generator == BOUGH_GENERATOR_LIBRARY;
-    if (library && bough_deck_number_or(o->servo, "TPitManS(1)|TPitManS1", end) < end)
-        bough_other_case(o, "TPitManS: the pitch manoeuvre");
+    for (int k = 1; k <= o->n_blade && library; k++) {
+        if (bough_deck_number_or(o->servo, bough_deck_kth(o->servo, "TPitManS", k), end) < end)
+            bough_other_case(o, "TPitManS(%d): the pitch manoeuvre of blade %d", k, k);
+    }
     if (brake && bough_deck_number_or(o->servo, "THSSBrDp", end) < end)
         bough_other_case(o, "THSSBrDp: the brake");
     if (!bough_deck_flag_or(o->elasto, "YawDOF", false) &&
@@ -313,6 +334,7 @@ static void note_manoeuvres(bough_openfast *o) {
 // Tuned masses and dampers are flags before OpenFAST 2.5.
 static const bough_openfast_rest rest[] = {
     {"yaw control", 0, {"YCMode"}},
+    {"cable control", 0, {"CCmode"}},
     {"structural control", 0, {"NumBStC", "NumNStC", "NumTStC", "NumSStC", "CompNTMD", "CompTTMD"}},
     {"flaps and other airfoil control", 0, {"AfCmode"}},
 };

@@ -298,11 +298,23 @@ static const bough_openfast_rest rest[] = {
     {NULL, 0, {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF"}},
     {"the run starts undeformed, without initial displacement",
      0,
-     {"OoPDefl", "IPDefl", "TTDspFA", "TTDspSS", "PtfmSurge", "PtfmSway", "PtfmHeave", "PtfmRoll",
-      "PtfmPitch", "PtfmYaw"}},
+     {"OoPDefl", "IPDefl", "TTDspFA", "TTDspSS"}},
     {"the pitch bearings are rigid", 0, {"PitchDOF"}},
     {"the gearbox has no losses", 100, {"GBoxEff"}},
 };
+
+// A platform that cannot move keeps its displacement of the start.
+static void leave_platform(bough_openfast *o) {
+    static const char *const start[][2] = {{"PtfmSurge", "PtfmSgDOF"}, {"PtfmSway", "PtfmSwDOF"},
+                                           {"PtfmHeave", "PtfmHvDOF"}, {"PtfmRoll", "PtfmRDOF"},
+                                           {"PtfmPitch", "PtfmPDOF"},  {"PtfmYaw", "PtfmYDOF"}};
+    for (size_t i = 0; i < sizeof start / sizeof *start; i++) {
+        if (bough_deck_number_or(o->elasto, start[i][0], 0) == 0) continue;
+        bool moves = bough_deck_flag_or(o->elasto, start[i][1], false);
+        bough_draft_note(o->draft, moves ? BOUGH_LEFT_OUT : BOUGH_OTHER_CASE,
+                         "%s: the platform stands upright in its place", start[i][0]);
+    }
+}
 
 void bough_openfast_bodies(bough_openfast *o) {
     if (!bough_is_ok(o->draft->status)) return;
@@ -313,5 +325,6 @@ void bough_openfast_bodies(bough_openfast *o) {
     put_rotor(o);
     if (bough_deck_whole_or(e, "YawFrctMod", 0) != 0)
         bough_other_case(o, "YawFrctMod: the friction of the yaw bearing");
+    leave_platform(o);
     bough_openfast_leave(o, e, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
 }
