@@ -437,6 +437,16 @@ imported() {
     has ../stdout '^scene: out/scene.yaml$'
     expect 0 check out/scene.yaml
     rm -r out
+    sed 's/^control:/control:\n  region2_k: 0.1/' "$folder/tests/data/decks/turbine-2.yaml" >../gain.yaml
+    expect 0 import windio ../gain.yaml --out out
+    has out/scene.yaml 'optimal_gain: 0.091189' # 0.1 N m/rpm2 of the rotor, over the square of the ratio 10
+    rm -r out
+    sed -i 's/region2_k: 0.1/region2_k: 10/' ../gain.yaml
+    expect 0 import windio ../gain.yaml --out out
+    has out/import.txt 'region2_k: would exceed rated power'
+    rm -r out
+    sed -i 's/region2_k: 10/region2_k: -1/' ../gain.yaml
+    refused 'gain.yaml:[0-9]*:[0-9]*: .*region2_k: expected a value above 0' import windio ../gain.yaml --out out
     refused 'main.fst:[0-9]*:[0-9]*: unexpected' import windio "$folder/tests/data/decks/main.fst" --out out
     refused "unknown kind 'adams'" import adams main.cmd --out out
     refused 'unexpected argument' import openfast main.fst more --out out

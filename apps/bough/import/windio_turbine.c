@@ -289,10 +289,23 @@ static void put_pitch(bough_windio *w, double ratio) {
                    "halving_pitch",
                    gains ? "the gains of the file, a table over the pitch, are not read"
                          : "the file has no gains");
-    if (bough_entry(w->root, "control.region2_k"))
-        bough_left_out(w,
-                       "region2_k and min_pitch_table: torque below rated by the design's power coefficient, "
-                       "one least pitch");
+    if (bough_entry(w->root, "control.min_pitch_table"))
+        bough_left_out(w, "min_pitch_table: one least pitch at all wind speeds");
+}
+
+// The gain of the speed's square [N m s2/rad2], at most the one that gives rated power just below rated
+// speed.
+static double optimal_gain(bough_windio *w, double ratio, double most) {
+    const bough_node *given = bough_entry(w->root, "control.region2_k");
+    if (!given) return most;
+    double gain = bough_entry_number(w->draft, given, "") / (BOUGH_RPM * BOUGH_RPM * ratio * ratio);
+    if (!(gain > 0)) bough_entry_fail(w->draft, given, "region2_k: expected a value above 0");
+    if (gain > most)
+        bough_approximated(w, "region2_k: would exceed rated power below rated speed; %.3g of it",
+                           most / gain);
+    else
+        bough_taken(w, "region2_k: the gain of the torque below rated speed");
+    return fmin(gain, most);
 }
 
 static double efficiency_of(bough_windio *w) {
@@ -333,14 +346,14 @@ void bough_windio_law(bough_windio *w) {
     double power = w->rated_power / efficiency, held = w->rated_speed * ratio;
     double rated = 0.99 * held; // so that torque and pitch do not compete
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
+    double gain = optimal_gain(w, ratio, 0.99 * power / (rated * rated * rated));
     bough_put(
         w,
         "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
         "  efficiency: %.10g\n  pitch: false\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
         "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
         "    most_torque: %.10g\n    torque_rate: %.10g\n",
-        1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
-        1.1 * power / rated, rate);
+        1 / d->macro_step, ratio, efficiency, gain, rated, power, 1.1 * power / rated, rate);
     bough_taken(w, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
                 w->rated_speed / BOUGH_RPM);
     bough_approximated(
