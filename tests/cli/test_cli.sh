@@ -503,7 +503,7 @@ T  DLL_Ramp
 END
     sed -i '/AdjFlSt/d; /AdjEdSt/d' ../decks/parts/blade.dat
     sed -i 's/2    CompElast/1    CompElast/' ../decks/main.fst
-    sed -i 's/2   SkewMod/0   SkewMod/; s/4   UAMod/4   UAMod\nF  AoA34\n0.9  UAEndRad\n1.2  SkewModFactor/' ../decks/parts/aero.dat
+    sed -i '/AirDens/d; s/2   SkewMod/0   SkewMod/; s/4   UAMod/4   UAMod\nF  AoA34\n0.9  UAEndRad\n1.2  SkewModFactor/' ../decks/parts/aero.dat
     sed -i 's/1   NumTabs/1   NumTabs\nTrue InclUAdata/' ../decks/parts/foils/flat.dat
     printf '3 PtfmPitch\n2 PtfmSurge\nTrue PtfmSgDOF\n' >>../decks/parts/elasto.dat
     echo '1 SensorType' >>../decks/parts/wind.dat
@@ -514,6 +514,7 @@ DLL_ProcName other: the library's function DISCON is called
 CCmode: cable control
 PtfmPitch: the platform stands upright in its place
 servo.dat has no GenEff: 100 is taken
+aero.dat has no AirDens: that of the main file, or 1.225 is taken
 blade.dat has no AdjFlSt, AdjEdSt: 1 is taken
 SkewMod 0: the whole wind acts, not only its part along the shaft
 AoA34 False: the angle of attack is that at three quarters of the chord

@@ -74,6 +74,7 @@ static const struct {
     {"AeroFile", "2", {"InCol_Cl"}},
     {"AeroFile", "3", {"InCol_Cd"}},
     {"AeroFile", "4", {"UAMod|UA_Mod"}},
+    {"AeroFile", "that of the main file, or 1.225", {"AirDens"}},
     {"AeroFile", "False", {"TwrAero"}},
     {"AeroFile", "True", {"TipLoss", "HubLoss", "TanInd", "AIDrag", "TIDrag", "UseBlCm"}},
     {"InflowFile", "0", {"PropagationDir|PropogationDir", "PLExp"}},
