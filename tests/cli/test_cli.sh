@@ -447,6 +447,18 @@ imported() {
     rm -r out
     sed -i 's/region2_k: 10/region2_k: -1/' ../gain.yaml
     refused 'gain.yaml:[0-9]*:[0-9]*: .*region2_k: expected a value above 0' import windio ../gain.yaml --out out
+    while IFS='|' read -r change message; do
+        sed "$change" "$folder/tests/data/decks/turbine-2.yaml" >../bad.yaml
+        refused "bad.yaml:[0-9]*:[0-9]*: $message" import windio ../bad.yaml --out out
+    done <<'END'
+s/: upwind/: sideways/|rotor_orientation: expected upwind or downwind, got 'sideways'
+s/rated_power: 5000/rated_power: -5000/|rated_power: expected 0 to 1e+09, got -5000
+s/uptilt: [0-9.]*/uptilt: 500/|uptilt: expected -80 to 80 deg, got 500
+s/cone_angle: [0-9.]*/cone_angle: 500/|cone_angle: expected -80 to 80 deg, got 500
+s/optimal_tsr: 7/optimal_tsr: -7/|optimal_tsr: expected 0 to 100, got -7
+s/mass: 1000}/mass: -1000}/|mass: expected 0 to 1e+09, got -1000
+s/^airfoils:/environment: {shear_exp: -0.2}\nairfoils:/|shear_exp: expected 0 to 1, got -0.2
+END
     refused 'main.fst:[0-9]*:[0-9]*: unexpected' import windio "$folder/tests/data/decks/main.fst" --out out
     refused "unknown kind 'adams'" import adams main.cmd --out out
     refused 'unexpected argument' import openfast main.fst more --out out

@@ -37,6 +37,36 @@ static void read_axis(bough_windio *w) {
     w->blade_length = z->y[z->n - 1];
 }
 
+// Limits of numbers that a file may lack; those of angles are in degrees.
+static const struct {
+    const char *path;
+    double low, high;
+    bool angle;
+} limits[] = {
+    {"assembly.rated_power", 0, 1e9, false},
+    {"environment.air_density", 1e-3, 1e4, false},
+    {"environment.shear_exp", 0, 1, false},
+    {"components.hub.cone_angle", -80, 80, true},
+    {"components.drivetrain.outer_shape.uptilt", -80, 80, true},
+    {"components.nacelle.drivetrain.uptilt", -80, 80, true},
+    {"components.yaw.elastic_properties.mass", 0, 1e9, false},
+    {"components.nacelle.drivetrain.elastic_properties_mb.yaw_mass", 0, 1e9, false},
+    {"control.optimal_tsr", 0, 100, false},
+    {"control.torque.tsr", 0, 100, false},
+};
+
+static void check_limits(bough_windio *w) {
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        double low = limits[i].low, high = limits[i].high, unit = limits[i].angle ? w->degree : 1;
+        const bough_node *node = bough_entry(w->root, limits[i].path);
+        double value = node ? bough_entry_number(w->draft, node, "") * unit : low;
+        if (!(value >= low && value <= high))
+            bough_entry_fail(w->draft, node, "%s: expected %g to %g%s, got %g",
+                             strrchr(limits[i].path, '.') + 1, low, high, limits[i].angle ? " deg" : "",
+                             value);
+    }
+}
+
 static void read_assembly(bough_windio *w) {
     bough_draft *d = w->draft;
     const bough_node *assembly = bough_entry_need(d, w->root, "assembly");
@@ -46,8 +76,10 @@ static void read_assembly(bough_windio *w) {
                          (int)BOUGH_IMPORT_BLADES, blades);
     }
     const bough_node *side = bough_entry(assembly, "rotor_orientation");
-    bool downwind = side && side->kind == BOUGH_SCALAR && strchr("dD", side->text[0]) != NULL;
-    w->forward = downwind && side->text[0] ? -1 : 1;
+    char first = side && side->kind == BOUGH_SCALAR ? (char)(side->text[0] | ' ') : 'u';
+    if (first != 'u' && first != 'd')
+        bough_entry_fail(d, side, "rotor_orientation: expected upwind or downwind, got '%.60s'", side->text);
+    w->forward = first == 'd' ? -1 : 1;
     w->n_blade = bough_is_ok(d->status) ? (int)blades : 1;
     w->rated_power = bough_entry_number_or(d, assembly, "rated_power", 0);
     w->density = bough_entry_number_or(d, w->root, "environment.air_density", 1.225);
@@ -137,6 +169,7 @@ static void convert(bough_draft *d, const char *path) {
     find_parts(w);
     read_axis(w);
     if (bough_is_ok(w->draft->status)) bough_windio_shape_read(w);
+    check_limits(w);
     read_assembly(w);
     if (!bough_is_ok(w->draft->status)) return;
     bough_taken(w, "%s, in the layout of version %d", path, w->second ? 2 : 1);
