@@ -542,6 +542,9 @@ END
     has ../first PtfmPitch
     grep -q PtfmSurge ../first && fail "$said: PtfmSurge of a platform that moves is no other load case"
     has ../first CCmode
+    expect 0 import openfast ../decks/main.fst --controller "$(dirname "$bough")/tests/libsample_discon.so" --out out
+    has out/import.txt 'Ptch_Min: this record is 0'
+    grep -q DLL_ProcName out/import.txt && fail "$said: DLL_ProcName of a library that is replaced"
     rm -r out
 }
 

@@ -278,7 +278,7 @@ static void put_switches(bough_openfast *o) {
 
 // -- library --------------------------------------------------------------------------------------
 
-// What ServoDyn adds to the deck's library.
+// What ServoDyn adds to a library.
 static void leave_interface(bough_openfast *o) {
     static const char zero[] = "this record is 0";
     static const bough_openfast_rest rest[] = {
@@ -290,8 +290,8 @@ static void leave_interface(bough_openfast *o) {
     bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest, BOUGH_LEFT_OUT);
     double cut = bough_deck_number_or(o->servo, "BPCutoff", HUGE_VAL);
     if (cut < 0.5 / o->draft->macro_step) bough_left_out(o, "BPCutoff %g Hz: no filter of the pitch", cut);
-    bool named = bough_deck_line(o->servo, "DLL_ProcName") >= 0;
-    const char *name = named ? bough_deck_text(o->servo, "DLL_ProcName") : "DISCON";
+    bool own = !o->draft->options->controller, named = bough_deck_line(o->servo, "DLL_ProcName") >= 0;
+    const char *name = own && named ? bough_deck_text(o->servo, "DLL_ProcName") : "DISCON";
     if (strcmp(name, "DISCON") != 0)
         bough_other_case(o, "DLL_ProcName %s: the library's function DISCON is called", name);
 }
@@ -312,7 +312,7 @@ static void put_library(bough_openfast *o) {
     if (fabs(asked - step) > 1e-9) {
         bough_approximated(o, "DLL_DT %g s: the library is called every %g s", asked, step);
     }
-    if (o->servo && !o->draft->options->controller) leave_interface(o);
+    if (mode_of(o, "VSContrl") == LIBRARY || mode_of(o, "PCMode") == LIBRARY) leave_interface(o);
 }
 
 // Manoeuvres that begin within the run.
