@@ -125,7 +125,8 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     automatic *m = self;
     if (restart) {
         m->now = m->first;
-        if (m->now == CVODE) m->tried = CVODE; // the Rosenbrock method is next
+        m->tried = m->now == CVODE ? CVODE : IDA; // the Rosenbrock method is next to CVODE
+        m->taken = 0;
         m->goes_on = false;
         m->cost = m->lost = 0;
         m->wait = FIRST_WAIT;

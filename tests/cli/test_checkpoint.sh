@@ -151,6 +151,19 @@ killed "$turbine" 40ms --set 'simulation.duration=1 s' --set 'simulation.macro_s
     --set 'simulation.output.interval=15 ms' --set 'simulation.output.frames=0.2 s'
 killed "$turbine" 40ms --set 'simulation.duration=1 s' --set simulation.error_shares=true --set simulation.error_bound=1 \
     --set 'bodies[3-5].rod.segments=8' --set 'simulation.output.frames=0.2 s'
+# the companion's methods are chosen by the steps since its start, which every checkpoint is
+cat >../rotor.yaml <<'EOF'
+gravity: [0, 0, -9.81]
+simulation: {duration: 3.2 s, macro_step: 5 ms, error_bound: 0, coupling: {scheme: gauss-seidel}, output: {frames: 0.5 s}}
+bodies:
+  - {name: hub, fidelity: rigid, mass: 5, inertia: [0.5, 0.3, 0.3], joint: {kind: revolute, axis: x, parent: ground, speed: 3 rad/s}}
+  - {name: a, fidelity: rod, joint: {kind: fixed, parent: hub, placement: [move z 0.2]},
+     rod: &rod {length: 3, segments: 16, stiffness: [1e6, 1e6, 3e6, 300, 900, 200], mass: [1.5, 0.01, 0, 1e-3, 2e-3, 0],
+                damping: [2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3]}}
+  - {name: b, fidelity: rod, joint: {kind: fixed, parent: hub, placement: [rotate x 180 deg, move z 0.2]}, rod: *rod}
+loads: [{joint: hub, torque: -20, ramp: [0, 0.3]}, {body: a, at: tip, force: [5, 0, 0], ramp: [0.1, 0.3]}]
+EOF
+killed ../rotor.yaml 200ms
 wrong_checkpoints
 wrong_intervals
 other_ends
