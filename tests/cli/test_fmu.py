@@ -70,10 +70,12 @@ class Instance:
             b"one", token, resources, False, False, False, False, None, SIZE(0), None, self.log, None)
         self.pointer = self.pointer and ctypes.c_void_p(self.pointer)
 
-    def start(self, stop=None, start=0):
-        return (library.fmi3EnterInitializationMode(self.pointer, False, REAL(0), REAL(start),
-                                                    stop is not None, REAL(stop or 0)),
-                library.fmi3ExitInitializationMode(self.pointer))
+    def start(self, stop=None, start=0, **inputs):
+        entered = library.fmi3EnterInitializationMode(self.pointer, False, REAL(0), REAL(start),
+                                                      stop is not None, REAL(stop or 0))
+        for name, value in inputs.items():
+            self.set(variables("input")[name], value)
+        return entered, library.fmi3ExitInitializationMode(self.pointer)
 
     def get(self, references):
         values = (REAL * len(references))()
@@ -243,6 +245,20 @@ class Fmu(unittest.TestCase):
                 self.assertEqual(fmu.get([0]), [own.time])
         self.assertEqual(library.fmi3Terminate(fmu.pointer), OK)
         fmu.free()
+
+    def test_outputs_at_time_0_follow_from_the_inputs_of_the_initialisation(self):
+        outputs = variables("output")
+        for stop in None, 50:
+            fmu = Instance()
+            self.assertEqual(fmu.start(stop, wind=9, brake=-1e6), (OK, OK), fmu.messages)
+            with bough.Session(TURBINE, *SETTINGS, "aero.wind.speed=9", "loads[0].torque=-1e6") as own:
+                for k in range(3):
+                    self.assertEqual(fmu.get([outputs[name] for name in own.names]), list(own.values))
+                    own.step()
+                    self.assertEqual(fmu.step(0.02 * k, 0.02)[0], OK, fmu.messages)
+            library.fmi3Reset(fmu.pointer)
+            self.assertEqual(fmu.get([outputs["Wind1VelX"]]), [20])
+            fmu.free()
 
     @unittest.skipUnless(shutil.which("fmusim"), "no fmusim of the Reference FMUs in the PATH")
     def test_a_public_client_runs_it_as_bough_does(self):

@@ -44,6 +44,11 @@ enum {
    memory is exhausted; bough_session_code states whether the scene was built. */
 BOUGH_API bough_session *bough_session_open(const char *scene, const char *const *set, int count);
 
+/* The same with the values of the inputs at time 0 (one for each input, SI; NULL: those of the scene). The
+   state at time 0 follows from them: loads, wind, joints with an input as motion, an equilibrium. */
+BOUGH_API bough_session *bough_session_open_with(const char *scene, const char *const *set, int count,
+                                                 const double *input);
+
 /* Code of the last open, step, save, restore, set or failed search of a name, and the message of a failure:
    one or more lines, "" after success. */
 BOUGH_API int bough_session_code(const bough_session *session);

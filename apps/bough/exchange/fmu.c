@@ -18,9 +18,10 @@ typedef struct instance {
     double start; // time of the importer at the session's time 0 [s]
     double end;   // of the session's time, by the importer's stop time or the scene's duration [s]
     mode mode;
+    bool changed; // inputs have other values than those at the start of the session, at its time 0
     char *scene;
-    char **set; // (n_set), with room for MORE_SETTINGS of a longer run
-    int n_set;
+    char **set; // (n_set + n_more), the last of a longer run
+    int n_set, n_more;
     fmi3_log *log;
     fmi3_environment environment;
 } instance;
@@ -29,6 +30,7 @@ typedef struct state {
     size_t size;
     double start;
     mode mode;
+    bool changed;
     _Alignas(max_align_t) char copy[]; // (size)
 } state;
 
@@ -98,11 +100,16 @@ static bool read_resources(instance *x, const char *resources, const char *token
     return good && x->n_set > 0;
 }
 
-static bool open_session(instance *x) {
+static bool open_session(instance *x, const double *input) {
     bough_session_close(x->session);
-    x->session = bough_session_open(x->scene, (const char *const *)x->set, x->n_set);
+    x->session = bough_session_open_with(x->scene, (const char *const *)x->set, x->n_set + x->n_more, input);
     x->end = bough_session_duration(x->session);
+    x->changed = false;
     return x->session && bough_session_code(x->session) == BOUGH_SESSION_OK;
+}
+
+static void drop_more(instance *x) {
+    while (x->n_more > 0) free(x->set[x->n_set + --x->n_more]);
 }
 
 fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
@@ -120,7 +127,7 @@ fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, f
     } else if (event_mode) {
         fail(x, "the FMU has no event mode");
     } else {
-        good = open_session(x);
+        good = open_session(x, NULL);
         if (!good && x->session) fail(x, "%s", bough_session_error(x->session));
     }
     if (good) return x;
@@ -132,43 +139,37 @@ void fmi3FreeInstance(fmi3_instance self) {
     instance *x = self;
     if (!x) return;
     bough_session_close(x->session);
+    drop_more(x);
     for (int k = 0; k < x->n_set; k++) free(x->set[k]);
     free(x->set);
     free(x->scene);
     free(x);
 }
 
-// Opens the session once more with settings after its own.
-static bool reopen(instance *x, const char *const *text, int n) {
-    int n_set = x->n_set;
-    bool good = true;
-    for (int k = 0; k < n; k++) {
-        x->set[n_set + k] = strdup(text[k]);
-        good = good && x->set[n_set + k];
-    }
-    x->n_set = n_set + n;
-    good = good && open_session(x);
-    for (int k = 0; k < n; k++) free(x->set[n_set + k]);
-    x->n_set = n_set;
-    return good;
+// Opens the session once more with its inputs as they are set: the state at time 0 follows from them.
+static fmi3_status reopen(instance *x) {
+    int n = bough_session_inputs(x->session);
+    double *value = malloc(((size_t)n + 1) * sizeof *value), end = x->end;
+    if (!value) return fail(x, "out of memory");
+    for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
+    bool good = open_session(x, value);
+    free(value);
+    x->end = end;
+    return good ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
 }
 
-// A longer duration in macro steps of the same length; what was set before is kept.
+// A longer duration in macro steps of the same length.
 static fmi3_status prolong(instance *x, double duration) {
     char longer[64], same_step[64];
-    double step = bough_session_macro_step(x->session);
-    int n = bough_session_inputs(x->session);
-    double *value = malloc(((size_t)n + 1) * sizeof *value);
-    if (!value) return FMI3_ERROR;
-    for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
     locale_t importers = bough_c_locale();
     snprintf(longer, sizeof longer, "simulation.duration=%.17g", duration);
-    snprintf(same_step, sizeof same_step, "simulation.macro_step=%.17g", step);
+    snprintf(same_step, sizeof same_step, "simulation.macro_step=%.17g",
+             bough_session_macro_step(x->session));
     uselocale(importers);
-    bool good = reopen(x, (const char *[]){longer, same_step}, MORE_SETTINGS);
-    for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);
-    free(value);
-    return good ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
+    x->set[x->n_set] = strdup(longer);
+    x->set[x->n_set + 1] = strdup(same_step);
+    x->n_more = MORE_SETTINGS;
+    return x->set[x->n_set] && x->set[x->n_set + 1] ? reopen(x) : fail(x, "out of memory");
 }
 
 fmi3_status fmi3EnterInitializationMode(fmi3_instance self, bool has_tolerance, double tolerance,
@@ -194,7 +195,7 @@ fmi3_status fmi3ExitInitializationMode(fmi3_instance self) {
     instance *x = self;
     if (x->mode != INITIALIZATION) return misplaced(x, "fmi3ExitInitializationMode");
     x->mode = STEP;
-    return FMI3_OK;
+    return x->changed ? reopen(x) : FMI3_OK;
 }
 
 fmi3_status fmi3Terminate(fmi3_instance self) {
@@ -208,14 +209,16 @@ fmi3_status fmi3Reset(fmi3_instance self) {
     instance *x = self;
     x->mode = INSTANTIATED;
     x->start = 0;
-    return open_session(x) ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
+    drop_more(x);
+    return open_session(x, NULL) ? FMI3_OK : answer(x, BOUGH_SESSION_OTHER);
 }
 
 // -- values ---------------------------------------------------------------------------------------
 
 fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, double *value,
                            size_t n_value) {
-    const instance *x = self;
+    instance *x = self;
+    if (x->changed && x->mode == INITIALIZATION && reopen(x) != FMI3_OK) return FMI3_ERROR;
     size_t inputs = (size_t)bough_session_inputs(x->session);
     const double *channel = bough_session_values(x->session);
     size_t count = (size_t)bough_session_count(x->session);
@@ -234,15 +237,18 @@ fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, 
 
 fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, const double *value,
                            size_t n_value) {
-    const instance *x = self;
+    instance *x = self;
     if (x->mode == TERMINATED) return misplaced(x, "fmi3SetFloat64");
     if (n != n_value) return fail(x, "fmi3SetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         if (reference[k] == 0 || reference[k] > (size_t)bough_session_inputs(x->session)) {
             return fail(x, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
         }
-        int code = bough_session_set(x->session, (int)reference[k] - 1, value[k]);
+        int input = (int)reference[k] - 1;
+        bool other = value[k] != bough_session_input_value(x->session, input);
+        int code = bough_session_set(x->session, input, value[k]);
         if (code != BOUGH_SESSION_OK) return answer(x, code);
+        x->changed = x->changed || (other && x->mode < STEP);
     }
     return FMI3_OK;
 }
@@ -263,7 +269,7 @@ fmi3_status fmi3GetFMUState(fmi3_instance self, fmi3_state *to) {
     state *s = realloc(*to, sizeof *s + size);
     if (!s) return fail(x, "out of memory");
     *to = s;
-    *s = (state){size, x->start, x->mode};
+    *s = (state){size, x->start, x->mode, x->changed};
     return answer(x, bough_session_save(x->session, s->copy));
 }
 
@@ -274,7 +280,7 @@ fmi3_status fmi3SetFMUState(fmi3_instance self, fmi3_state from) {
         return fail(x, "fmi3SetFMUState: not a state of this FMU");
     }
     fmi3_status status = answer(x, bough_session_restore(x->session, s->copy));
-    if (status == FMI3_OK) x->start = s->start, x->mode = s->mode;
+    if (status == FMI3_OK) x->start = s->start, x->mode = s->mode, x->changed = s->changed;
     return status;
 }
 

@@ -139,6 +139,7 @@ typedef struct opening {
     bough_session *session;
     const char *path, *const *set;
     int n_set;
+    const double *input; // of the inputs at the start, NULL: those of the scene
 } opening;
 
 static bough_status check_opening(const opening *o) {
@@ -167,6 +168,7 @@ static bough_status build(bough_arena *arena, void *self) {
     // errors are estimated only where the scene asks for it
     if (!bough_node_find(scene->simulation.node, "error_estimate"))
         scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
+    for (int k = 0; k < scene->n_input && o->input; k++) bough_scene_start_input(scene, k, o->input[k]);
     BOUGH_TRY(bough_run_create(arena, scene, &s->run));
     bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
@@ -177,6 +179,11 @@ static bough_status build(bough_arena *arena, void *self) {
 }
 
 bough_session *bough_session_open(const char *scene, const char *const *set, int count) {
+    return bough_session_open_with(scene, set, count, NULL);
+}
+
+bough_session *bough_session_open_with(const char *scene, const char *const *set, int count,
+                                       const double *input) {
     bough_session *s = calloc(1, sizeof *s);
     if (!s) return NULL;
     s->arena = bough_arena_create();
@@ -184,7 +191,7 @@ bough_session *bough_session_open(const char *scene, const char *const *set, int
         free(s);
         return NULL;
     }
-    opening o = {s, scene, set, count};
+    opening o = {s, scene, set, count, input};
     locale_t callers = bough_c_locale();
     s->opening = conclude(s, bough_arena_guard(s->arena, build, &o));
     uselocale(callers);

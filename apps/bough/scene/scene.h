@@ -519,6 +519,9 @@ bough_status bough_scene_read(bough_arena *arena, bough_schema_shared *shared, c
 // A copy whose bodies may be changed; the rest is shared.
 bough_scene *bough_scene_copy(bough_arena *arena, const bough_scene *scene);
 
+// Gives the k-th input another value at time 0 (SI): the scene is then as if its own key had that value.
+void bough_scene_start_input(bough_scene *scene, int k, double value);
+
 // The place of a value before a message, "file:line:column: " or "--set: ", written into `text`; "" of NULL.
 const char *bough_scene_place(const bough_node *value, char *text, size_t size);
 

@@ -128,3 +128,10 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s) {
     add_wind(r, s);
     check_names(r, s);
 }
+
+void bough_scene_start_input(bough_scene *s, int k, double value) {
+    bough_scene_input *input = &s->input[k];
+    input->initial = value;
+    if (input->kind == BOUGH_INPUT_WIND) s->aero.wind.def.speed = value;
+    if (input->kind == BOUGH_INPUT_MOTION) s->body[input->index].joint.motion[0].def.from = value;
+}
