@@ -91,6 +91,9 @@ bad_scenes() {
     printf 'kind: sweep\nscene: %s\ngrid:\n  simulation.durration: [1]\n' "$bar" >../sweep.yaml
     refused '^../sweep.yaml:4:26: error: simulation: unknown key .durration' study ../sweep.yaml
     refused "error: .*unit" run "$bar" --set 'simulation.duration=1 kg'
+    refused "error: simulation.threads: must be in \[0, 1024\], got '3000000000'" run "$bar" --set simulation.threads=3000000000
+    refused "error: aero.wind.seed: must be in \[-999999999, 999999999\], got '3000000000'" run "$folder/apps/turbine/power.yaml" \
+        --set 'aero.wind={kind: iec, condition: ntm, reference_height: 90 m, speed: 9 m/s, seed: 3000000000}'
     refused 'absent.yaml: error: ' run absent.yaml
     printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml
     refused "study.yaml:1:7: error: kind: this is a study, not a scene: 'bough study ../study.yaml'" run ../study.yaml

@@ -175,6 +175,7 @@ bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_U
 bool bough_in_range(double value, const char *range);
 
 // A whole number of at most nine digits.
+enum { BOUGH_MOST_WHOLE = 999999999 };
 bool bough_whole_number(const char *text, int *value);
 
 // The candidate nearest to a misspelt word, NULL when none is near. Candidates may be NULL.

@@ -132,10 +132,16 @@ static void read_number(bough_schema_reader *r, const bough_key *key, const boug
 }
 
 static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node, int *field) {
-    if (node->kind != BOUGH_SCALAR || !bough_whole_number(node->text, field)) {
-        bough_schema_expected(r, node, "a whole number");
-    } else {
+    const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
+    double value = strtod(text, NULL);
+    char shown[64];
+    if (bough_whole_number(text, field)) {
         check_range(r, key, node, *field);
+    } else if (strspn(text, "-0123456789") < strlen(text) || !(fabs(value) > BOUGH_MOST_WHOLE)) {
+        bough_schema_expected(r, node, "a whole number");
+    } else if (check_range(r, key, node, value)) {
+        bough_schema_error(r, node, "", "must be in [%d, %d], got %s", -BOUGH_MOST_WHOLE, BOUGH_MOST_WHOLE,
+                           bough_node_shown(node, shown));
     }
 }
 
