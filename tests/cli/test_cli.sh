@@ -369,6 +369,8 @@ bad_output() {
     ln -s /dev/full full/summary.json.partial
     expect 1 run "$bar" --set "$short" --out full
     has ../stderr '^bough: error: .*No space left'
+    has ../stdout '^status: failed$'
+    grep '^next:' ../stdout && fail "$said: a report of results that were not written"
     missing full/summary.json
     rm -r full/*
     ln -s /dev/full full/channels.out.partial

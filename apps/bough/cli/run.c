@@ -186,8 +186,8 @@ static bough_status close_results(bough_run_command *command) {
     if (bough_is_ok(outcome)) *outcome = status;
     if (!finished) return *outcome;
     status = bough_run_summarise(command);
-    BOUGH_TRY(*outcome);
-    return bough_is_ok(&status) ? bough_checkpoint_remove(command->folder) : status;
+    if (bough_is_ok(outcome)) *outcome = status;
+    return bough_is_ok(outcome) ? bough_checkpoint_remove(command->folder) : *outcome;
 }
 
 // Warns during the run if short steps of the solver make it slow.

@@ -439,11 +439,11 @@ static void print_run(const bough_run_command *command) {
 }
 
 static void print_next(const bough_run_command *command) {
-    bool resumes = command->checkpoint.interval > 0 && !bough_is_ok(&command->run.outcome);
+    const bough_status *outcome = &command->run.outcome;
     printf("out: %s\n", command->folder);
-    if (resumes)
+    if (command->checkpoint.interval > 0 && !bough_is_ok(outcome))
         printf("next: the same command with --resume goes on from the last checkpoint\n");
-    else
+    else if (outcome->code != BOUGH_IO) // results that could not be written have no report
         printf("next: bough report %s\n", command->folder);
 }
 
