@@ -104,6 +104,8 @@ wrong_checkpoints() {
     cp checkpoint.bin kept/checkpoint.bin
     refused 'is of another scene or other settings' "$bar"
     refused 'is of another scene or other settings' "$turbine" --set "$long"
+    grep -q avx2 /proc/cpuinfo &&
+            refused 'is of another version of the program or of other --kernels' "$bar" --set "$long" --kernels v2
     refused 'has --checkpoint 0.01 s, not 0.02 s' "$bar" --set "$long" --checkpoint 20ms
     cp kept/channels.out.partial rows
     head -c 100 rows >kept/channels.out.partial

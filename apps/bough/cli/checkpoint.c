@@ -3,6 +3,7 @@
 #include "apps/bough/results/folder.h"
 #include "apps/bough/scene/scene_files.h"
 #include "core/base/input_file.h"
+#include "core/base/level.h"
 
 #include <errno.h>
 #include <unistd.h>
@@ -74,11 +75,12 @@ static bough_status check_interval(const bough_run_command *command, double inte
     return companion ? check_samples(companion->master, " of the companion", interval) : bough_ok();
 }
 
-// Threads and folder do not count: they change no result.
+// Threads and folder do not count: they change no result. Kernels of another level round differently.
 static void find_fingerprints(bough_run_command *command) {
     bough_checkpoint *c = &command->checkpoint;
     c->program = c->input = BOUGH_FINGERPRINT_START;
     bough_mix_program(&c->program);
+    bough_mix_text(&c->program, bough_level_name(bough_level_chosen()));
     bough_mix_scene(&c->input, &(bough_file_sums){.arena = command->arena}, command->run.simulation->scene);
     for (int i = 0; i < command->options->common.set.n; i++)
         bough_mix_text(&c->input, command->options->common.set.text[i]);
@@ -112,7 +114,8 @@ static bough_status read_copy(bough_run_command *command, const char *path, FILE
         (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF || sum_of(&h, c->copy) != h.sum)) {
         return refuse(path, damaged);
     }
-    if (h.program != c->program) return refuse(path, "of another version of the program");
+    if (h.program != c->program)
+        return refuse(path, "of another version of the program or of other --kernels");
     if (h.input != c->input) return refuse(path, "of another scene or other settings");
     if (!fits) return refuse(path, damaged);
     if (c->interval > 0 && c->interval != h.interval) {
