@@ -104,5 +104,9 @@ double bough_turbulence_coherence(const bough_wind_iec_def *def, double distance
 // Whether two definitions make the same box.
 bool bough_turbulence_equal(const bough_wind_iec_def *a, const bough_wind_iec_def *b);
 
+// The shortest period of a box that is not shorter than the given one [s]: an even number of time steps
+// without factors other than 2, 3 and 5. One of more than 1e8 steps is refused when the box is made.
+double bough_turbulence_period(double period, double time_step);
+
 // Makes the box, in which the mean wind by its profile is contained.
 bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def, bough_wind_box *box);

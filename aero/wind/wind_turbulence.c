@@ -296,6 +296,14 @@ static void set_resolution(const bough_wind_iec_def *d, bough_wind_box *box) {
     }
 }
 
+static int count_times(double period, double time_step) {
+    return smooth((int)ceil(period / time_step - 1e-9));
+}
+
+double bough_turbulence_period(double period, double time_step) {
+    return period / time_step < 1e8 ? time_step * count_times(period, time_step) : period;
+}
+
 static void lay_out(const bough_wind_iec_def *d, bough_wind_box *box) {
     *box = (bough_wind_box){.periodic = true, .n_z = d->points, .n_y = d->points};
     box->dz = box->dy = as_float(d->width / (d->points - 1));
@@ -303,7 +311,7 @@ static void lay_out(const bough_wind_iec_def *d, bough_wind_box *box) {
     box->mean = as_float(bough_wind_iec_speed(d));
     box->hub = as_float(d->height);
     box->bottom = as_float(d->height - 0.5 * d->width);
-    box->n_time = smooth((int)ceil(d->period / d->time_step - 1e-9));
+    box->n_time = count_times(d->period, d->time_step);
     box->duration = box->dt * box->n_time;
     box->half_width = box->dy * (box->n_y - 1) / 2;
     set_resolution(d, box);

@@ -94,6 +94,8 @@ bad_scenes() {
     refused "error: simulation.threads: must be in \[0, 1024\], got '3000000000'" run "$bar" --set simulation.threads=3000000000
     refused "error: aero.wind.seed: must be in \[-999999999, 999999999\], got '3000000000'" run "$folder/apps/turbine/power.yaml" \
         --set 'aero.wind={kind: iec, condition: ntm, reference_height: 90 m, speed: 9 m/s, seed: 3000000000}'
+    refused 'error: aero.wind.period: the turbulence repeats .* give 720 s, got 700 s' check "$folder/apps/turbine/power.yaml" \
+        --set 'aero.wind={kind: iec, condition: ntm, reference_height: 90 m, speed: 9 m/s, period: 700 s}'
     refused 'absent.yaml: error: ' run absent.yaml
     printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml
     refused "study.yaml:1:7: error: kind: this is a study, not a scene: 'bough study ../study.yaml'" run ../study.yaml

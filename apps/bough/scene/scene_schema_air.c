@@ -133,9 +133,9 @@ static const bough_schema wind_schema = {.name = "the wind", .check = bough_scen
     {NAMED("time_step", NUMBER), AT(def.iec.time_step), UNIT(TIME), .range = "> 0", .fallback = "0.05",
      WHEN("kind", "iec"), .example = "0.1 s", .help = "time step of the turbulence"},
     {NAMED("period", NUMBER), AT(def.iec.period), UNIT(TIME), .range = "> 0", .word = "auto",
-     .fallback = "auto", WHEN("kind", "iec"), .example = "700 s",
-     .help = "period after which the turbulence repeats, rounded up to a number of time steps without "
-             "other factors than 2, 3 and 5; auto: the duration, at least 600 s"},
+     .fallback = "auto", WHEN("kind", "iec"), .example = "720 s",
+     .help = "period after which the turbulence repeats: an even number of time steps without factors other "
+             "than 2, 3 and 5; auto: the next such number for the duration, at least for 600 s"},
     {NAMED("file", TEXT), AT(def.file), .required = true, WHEN("kind", "wnd|bts"), .example = "turbulence.bts",
      .help = "relative to the scene"},
     {DEF(speed), UNIT(SPEED), .range = WIND_SPEED_RANGE, .example = "11.4 m/s",

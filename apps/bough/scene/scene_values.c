@@ -291,6 +291,14 @@ static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
         bough_schema_error(r, w->node, "speed", "a speed above 0 is required with this condition");
     }
     if (extreme && !bough_node_find(w->node, "exponent")) w->def.exponent = 0.11;
+    const bough_wind_iec_def *iec = &w->def.iec;
+    if (!(iec->period > 0 && iec->time_step > 0)) return; // auto, or an error
+    double period = bough_turbulence_period(iec->period, iec->time_step);
+    if (fabs(period - iec->period) <= 1e-6 * period) return;
+    bough_schema_error(r, w->node, "period",
+                       "the turbulence repeats after an even number of time steps without factors other "
+                       "than 2, 3 and 5: give %.9g s, got %.9g s",
+                       period, iec->period);
 }
 
 void bough_scene_check_wind(bough_schema_reader *r, void *item) {
