@@ -97,6 +97,20 @@ bad_scenes() {
     refused 'error: aero.wind.period: the turbulence repeats .* give 720 s, got 700 s' check "$folder/apps/turbine/power.yaml" \
         --set 'aero.wind={kind: iec, condition: ntm, reference_height: 90 m, speed: 9 m/s, period: 700 s}'
     refused 'absent.yaml: error: ' run absent.yaml
+    # what is found while the scene is built has its place, too
+    built='simulation: {duration: 1 s}
+bodies:
+  - {name: a, fidelity: rigid, mass: 1, joint: {kind: revolute, axis: x, parent: ground}}
+closures:
+  - {name: pin, kind: revolute, axis: x, from: a, from_placement: [move z 1], to: ground, to_placement: [move z 2]}
+markers:
+  - {name: m, body: a}'
+    echo "$built" >../built.yaml
+    refused "^bough: error: ../built.yaml:3:5: bodies\[a\]: body 'a': its revolute joint moves no inertia" run ../built.yaml
+    echo "$built" | sed 's/mass: 1/&, inertia: [1, 1, 1]/' >../built.yaml
+    refused "^bough: error: ../built.yaml:5:5: closures\[pin\]: closure 'pin': its ends are 1 m apart" run ../built.yaml
+    sed -i 's/move z 2/move z 1/; $a\  - {name: m, body: ground}' ../built.yaml
+    refused "^bough: error: ../built.yaml:8:5: markers\[m\]: two output channels are named 'mX'" run ../built.yaml
     printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml
     refused "study.yaml:1:7: error: kind: this is a study, not a scene: 'bough study ../study.yaml'" run ../study.yaml
     refused "this is a scene, not a study: 'bough run $bar' runs it" study "$bar"

@@ -32,11 +32,10 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
     }
     const bough_scene_body *pivot = pivot_of(s->scene, beam);
     if (pivot == NULL) {
-        return bough_fail(BOUGH_INVALID,
-                          "rod %s: no revolute joint%s%s carries it; name an 'axis'"
-                          " for the speed of 'modes'",
-                          beam->body->name, modes->about_name == NULL ? "" : " of ",
-                          modes->about_name == NULL ? "" : modes->about_name);
+        bough_status status = bough_fail(
+            BOUGH_INVALID, "rod %s: no revolute joint%s%s carries it; name an 'axis' for this speed",
+            beam->body->name, modes->about_name ? " of " : "", modes->about_name ? modes->about_name : "");
+        return bough_scene_blame(bough_node_find(modes->node, "speed"), "modes.speed", status);
     }
     int body = (int)(pivot - s->scene->body);
     turning->axis = bough_simulation_joint_axis(s, body);

@@ -487,7 +487,8 @@ static bough_status find(bough_arena *arena, const void *given) {
     if (own->sensitivity)
         return bough_fail(BOUGH_INVALID, "--sensitivity needs modes of the whole scene: modes.of: scene");
     if (bough_steady_rods(s) == 0) {
-        return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
+        return bough_scene_blame(bough_node_find(s->scene->modes.node, "of"), "modes.of",
+                                 bough_fail(BOUGH_INVALID, "no body has fidelity rod"));
     }
     const char *folder = bough_out_folder(arena, options);
     rod_list rods = {bough_steady_rods(s), bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods.rod)};

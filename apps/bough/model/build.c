@@ -86,7 +86,7 @@ static bough_status build_tree(bough_builder *b) {
     b->tree.n_ports = s->n_rod + s->n_fmu;
     b->tree.n_ends = s->n_end;
     b->tree.closure_time = scene->simulation.macro_step;
-    BOUGH_TRY(bough_tree_create(b->arena, &b->tree, &s->tree));
+    BOUGH_TRY(bough_scene_blame_named(scene, bough_tree_create(b->arena, &b->tree, &s->tree)));
     s->view = bough_tree_data_create(b->arena, s->tree);
     s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     s->accelerated = bough_arena_doubles(b->arena, 1);
@@ -121,8 +121,9 @@ static bough_status build_rods(bough_builder *b) {
             memcpy(input + BOUGH_PORT_OUTPUTS, end + BOUGH_END_OUTPUTS * beam->end,
                    BOUGH_END_OUTPUTS * sizeof *input);
         }
-        BOUGH_TRY(bough_build_beam(b->arena, beam, input, &system));
-        bough_status status = bough_member_create(b->arena, &system, 0, &options, &s->rod[beam->port]);
+        bough_status status = bough_build_beam(b->arena, beam, input, &system);
+        BOUGH_TRY(bough_scene_blame(beam->body->rod.node, "rod", status));
+        status = bough_member_create(b->arena, &system, 0, &options, &s->rod[beam->port]);
         BOUGH_TRY(blame_solver(micro, "micro.solver", status));
     }
     int port = s->n_rod; // of the FMUs, after the rods

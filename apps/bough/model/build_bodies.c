@@ -122,7 +122,9 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
                                  .length = rod->length,
                                  .grading = beam->body->rod.grading};
     memcpy(table.damping, rod->damping, sizeof table.damping);
-    return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment, &beam->def);
+    return bough_scene_blame(
+        beam->body->rod.node, "rod",
+        bough_section_discretise(b->arena, &table, beam->body->rod.n_segment, &beam->def));
 }
 
 static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {

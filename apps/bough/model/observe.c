@@ -438,5 +438,5 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (turbine) bough_observe_shaft(s, channels);
     if (s->aero != NULL) add_aero(s, channels);
     if (s->control != NULL) add_control(s, channels);
-    return channels->status;
+    return bough_scene_blame_named(scene, channels->status);
 }

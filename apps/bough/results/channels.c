@@ -88,7 +88,8 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     }
     assert(is_word(unit, BOUGH_CHANNEL_UNIT));
     if (bough_channels_find(list, name) >= 0) {
-        list->status = bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+        list->status =
+            bough_fail(BOUGH_INVALID, "two output channels are named '%s': give one another name", name);
         return;
     }
     make_room(list);

@@ -528,6 +528,10 @@ const char *bough_scene_place(const bough_node *value, char *text, size_t size);
 // Puts place and key of the value before the message of a BOUGH_INVALID, found while the scene is built.
 bough_status bough_scene_blame(const bough_node *value, const char *key, bough_status status);
 
+// The same for a message that quotes the name of a body, a marker or a connector, or of one of their
+// channels.
+bough_status bough_scene_blame_named(const bough_scene *scene, bough_status status);
+
 // Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
 // has, a setting that the scheme or the solver does not use.
 void bough_scene_warn(const bough_scene *scene, FILE *stream);

@@ -353,33 +353,63 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
 }
 
 #define LIST(what, items, count, link)                                                                       \
-    {                                                                                                        \
-        what, offsetof(bough_scene, items), offsetof(bough_scene, count), sizeof *((bough_scene *)0)->items, \
-            link                                                                                             \
-    }
+    what, offsetof(bough_scene, items), offsetof(bough_scene, count), sizeof *((bough_scene *)0)->items, link
+#define CONNECTORS(what, KIND, link)                                                                         \
+    LIST(what, connector[BOUGH_SCENE_##KIND], n_connector[BOUGH_SCENE_##KIND], link)
 static const struct {
     const char *name;
     size_t items, count, size; // place of the pointer and of the number of items, size of one
     void (*link)(bough_schema_reader *r, const bough_scene *s, void *item);
+    const char *one; // how messages call an item of a list with names
+    size_t own_name; // place of its name
 } lists[] = {
-    LIST("loads", load, n_load, link_load),
-    LIST("markers", marker, n_marker, link_marker),
-    LIST("sensors", sensor, n_sensor, link_sensor),
-    LIST("bushings", connector[BOUGH_SCENE_BUSHING], n_connector[BOUGH_SCENE_BUSHING], link_connector),
-    LIST("springs", connector[BOUGH_SCENE_SPRING], n_connector[BOUGH_SCENE_SPRING], link_connector),
-    LIST("closures", connector[BOUGH_SCENE_CLOSURE], n_connector[BOUGH_SCENE_CLOSURE], link_closure),
+    {LIST("bodies", body, n_body, NULL), "body", offsetof(bough_scene_body, name)},
+    {LIST("loads", load, n_load, link_load), NULL, 0},
+    {LIST("markers", marker, n_marker, link_marker), "marker", offsetof(bough_scene_marker, name)},
+    {LIST("sensors", sensor, n_sensor, link_sensor), NULL, 0},
+    {CONNECTORS("bushings", BUSHING, link_connector), "bushing", offsetof(bough_scene_connector, name)},
+    {CONNECTORS("springs", SPRING, link_connector), "spring", offsetof(bough_scene_connector, name)},
+    {CONNECTORS("closures", CLOSURE, link_closure), "closure", offsetof(bough_scene_connector, name)},
 };
 
 static void link_lists(bough_schema_reader *r, bough_scene *s) {
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
         char *items = *(char **)(void *)((char *)s + lists[k].items);
-        int count = *(int *)(void *)((char *)s + lists[k].count);
+        int count = lists[k].link ? *(int *)(void *)((char *)s + lists[k].count) : 0;
         for (int i = 0; i < count; i++) {
             void *item = items + (size_t)i * lists[k].size;
             bough_link_at(r, "%s[%d]", lists[k].name, i);
             if (*(const bough_node **)item != NULL) lists[k].link(r, s, item);
         }
     }
+}
+
+// Whether a message is about this item, or about a channel whose name begins with the item's.
+static bool is_about(const char *message, const char *one, const char *name) {
+    static const char named[] = "channels are named '";
+    char quoted[200];
+    const char *channel = strstr(message, named);
+    channel = channel ? channel + strlen(named) : message + (message[0] == '\'');
+    snprintf(quoted, sizeof quoted, "%s '%.160s'", one, name);
+    return strstr(message, quoted) || (channel > message && strncmp(channel, name, strlen(name)) == 0);
+}
+
+bough_status bough_scene_blame_named(const bough_scene *s, bough_status status) {
+    const bough_node *place = NULL;
+    char key[200];
+    size_t longest = 0;
+    for (size_t k = 0; k < sizeof lists / sizeof *lists && status.code == BOUGH_INVALID; k++) {
+        const char *item = *(char *const *)(const void *)((const char *)s + lists[k].items);
+        int count = lists[k].one ? *(const int *)(const void *)((const char *)s + lists[k].count) : 0;
+        for (int i = 0; i < count; i++, item += lists[k].size) {
+            const char *name = *(const char *const *)(const void *)(item + lists[k].own_name);
+            if (strlen(name) < longest || !is_about(status.message, lists[k].one, name)) continue;
+            longest = strlen(name);
+            place = *(const bough_node *const *)(const void *)item;
+            snprintf(key, sizeof key, "%s[%.160s]", lists[k].name, name);
+        }
+    }
+    return place ? bough_scene_blame(place, key, status) : status;
 }
 
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
