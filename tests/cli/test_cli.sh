@@ -143,6 +143,29 @@ unused_settings() {
     done
     expect 0 check "$bar" --set simulation.coupling.theta=0.6
     has ../stderr "warning: simulation.coupling.theta: not used with 'scheme: monolithic', only with ramp"
+    # keys of control, air and estimate that their choice does not use
+    power=$folder/apps/turbine/power.yaml
+    unused() { # WARNING SETTING...: with these settings together
+        warning=$1
+        shift
+        for setting in "$@"; do set -- "$@" --set "$setting"; shift; done
+        expect 0 check "$power" "$@"
+        has ../stderr "^--set: warning: $warning"
+        [ "$(wc -l <../stderr)" -eq 1 ] || fail "$said: more than the one warning: $(cat ../stderr)"
+    }
+    unused "control.law.corner: not used with 'kind: external', only with variable-speed" 'control={kind: external, law: {corner: 1 rad/s}}'
+    unused "control.law.integral: not used with 'pitch: false', only with true" control.pitch=false control.law.integral=0.01
+    wind='kind: iec, reference_height: 90 m, speed: 9 m/s'
+    unused "aero.wind.seed: not used with 'condition: eog', only with ntm|etm|ewm" "aero.wind={$wind, condition: eog, seed: 2}"
+    unused "aero.wind.shear: not used with 'condition: edc', only with ews" "aero.wind={$wind, condition: edc, shear: vertical}"
+    unused "aero.tower.drag: not used, only with 'influence: bak'" 'aero.tower.drag=[0.5]'
+    unused "simulation.error_bound: not used with 'error_estimate: none'" simulation.error_estimate=none simulation.error_bound=0.1
+    unused 'simulation.step_control.min: not used without' simulation.coupling.scheme=iterated 'simulation.step_control={min: 1 ms}'
+    # not where a file or the command line replaces the choice of the file below it
+    printf 'base: %s\naero: {tower: {drag: [0.5]}, wind: {%s, condition: ntm, seed: 2}}\n' "$power" "$wind" >../ntm.yaml
+    printf 'base: ntm.yaml\naero: {tower: {influence: bak}, wind: {condition: eog}}\n' >../eog.yaml
+    expect 0 check ../eog.yaml
+    empty ../stderr
     nothing_written
 }
 

@@ -533,7 +533,7 @@ bough_status bough_scene_blame(const bough_node *value, const char *key, bough_s
 bough_status bough_scene_blame_named(const bough_scene *scene, bough_status status);
 
 // Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
-// has, a setting that the scheme or the solver does not use.
+// has, a setting that the chosen scheme, solver, control, wind or estimate does not use.
 void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.

@@ -117,11 +117,74 @@ static void warn_law(const bough_scene_control *control, FILE *stream) {
 
 // -- settings that are not used -------------------------------------------------------------------
 
-// Whether to warn about a setting that the chosen scheme, solver or duration does not use: not where the
-// command line replaces the choice alone, since the scene gives the setting for its own choice.
+// Whether to warn about a setting that the choice does not use: not where the command line, or a file that
+// builds on the setting's, replaces the choice alone, since the setting is given for the earlier choice.
 static bool is_unused(const bough_node *given, const bough_node *choice) {
-    bool replaced = choice != NULL && choice->line == 0;
+    bool replaced = choice && given && (choice->line == 0 || strcmp(choice->file, given->file) != 0);
     return given != NULL && !(given->line > 0 && replaced);
+}
+
+// Settings in `mapping` that only some values of another key use.
+static const struct {
+    const char *mapping, *keys, *choice;
+    const char *usual,
+        *users; // the value of the choice that is not given, the values with which they are used
+} settings[] = {
+    {"control.law",
+     "corner|cut_in|optimal_from|optimal_gain|above_rated|rated_power|slip|most_torque|motoring|torque_rate|"
+     "reference_speed|proportional|integral|halving_pitch|least_pitch|most_pitch",
+     "control.kind", NULL, "variable-speed"},
+    {"control.law",
+     "power_pitch|reference_speed|proportional|integral|halving_pitch|least_pitch|most_pitch|pitch_rate",
+     "control.pitch", "true", "true"},
+    {"aero.wind", "start", "aero.wind.condition", NULL, "eog|edc|ecd|ews"},
+    {"aero.wind", "sense", "aero.wind.condition", NULL, "edc|ecd|ews"},
+    {"aero.wind", "shear", "aero.wind.condition", NULL, "ews"},
+    {"aero.wind", "recurrence", "aero.wind.condition", NULL, "ewm|ewm-steady"},
+    {"aero.wind", "seed|points|width|time_step|period", "aero.wind.condition", NULL, "ntm|etm|ewm"},
+    {"aero.wind", "intensity|rotor_diameter", "aero.wind.condition", NULL, "ntm|etm|ewm|eog|edc|ews"},
+    {"aero.wind", "class", "aero.wind.condition", NULL, "ntm|etm|ewm|ewm-steady|eog|edc|ews"},
+    {"modes", "at|air|linear", "modes.of", "auto", "auto|scene"},
+    {"simulation", "error_bound|error_shares", "simulation.error_estimate", "companion", "companion"},
+};
+
+static void warn_settings(const bough_scene *scene, FILE *stream) {
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
+        const char *keys = settings[i].keys, *users = settings[i].users;
+        const bough_node *choice = bough_node_below(scene->node, settings[i].choice, NULL);
+        const char *chosen = choice ? choice->text : settings[i].usual;
+        if (chosen == NULL || bough_word_is_among(chosen, users, '|')) continue;
+        for (size_t n; *keys != '\0'; keys += n + (keys[n] == '|')) {
+            char path[64];
+            n = strcspn(keys, "|");
+            snprintf(path, sizeof path, "%s.%.*s", settings[i].mapping, (int)n, keys);
+            const bough_node *given = bough_node_below(scene->node, path, NULL);
+            if (!is_unused(given, choice)) continue;
+            warn(given, stream, "%s: not used with '%s: %s', only with %s", path,
+                 strrchr(settings[i].choice, '.') + 1, chosen, users);
+        }
+    }
+}
+
+// Settings that are used only if another is not zero, or one of several is given.
+static void warn_companions(const bough_scene *scene, FILE *stream) {
+    const bough_scene_tower *tower = &scene->aero.tower;
+    const bough_scene_step_control *control = &scene->simulation.step_control;
+    const bough_node *drag = bough_node_find(tower->node, "drag");
+    const bough_node *least = bough_node_find(control->node, "min");
+    bool has_drag = tower->def.influence == BOUGH_TOWER_BAK || tower->def.shadow != BOUGH_TOWER_SHADOW_NONE ||
+                    tower->body_name != NULL;
+    if (!has_drag && is_unused(drag, bough_node_find(tower->node, "influence")))
+        warn(drag, stream,
+             "aero.tower.drag: not used, only with 'influence: bak', 'shadow: powles' or a 'body'");
+    if (least && !(control->tolerance > 0))
+        warn(least, stream, "simulation.step_control.min: not used without a 'tolerance'");
+    for (int k = 0; k < scene->n_connector[BOUGH_SCENE_SPRING]; k++) {
+        const bough_scene_connector *spring = &scene->connector[BOUGH_SCENE_SPRING][k];
+        const bough_node *length = bough_node_find(spring->node, "length");
+        if (length && spring->spring.stiffness == 0)
+            warn(length, stream, "springs[%d].length: not used without a 'stiffness'", k);
+    }
 }
 
 static void warn_output(const bough_scene_simulation *s, FILE *stream) {
@@ -189,6 +252,9 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream) {
         last = b->node;
         if (bough_node_find(b->node, "inertia")) warn_inertia(b, stream);
         if (b->micro.node) warn_micro(scene, b, stream);
+        const bough_node *rest = bough_node_find(b->joint.node, "rest");
+        if (rest && b->joint.spring.stiffness == 0)
+            warn(rest, stream, "body '%s': joint.rest: not used without a 'stiffness'", b->name);
     }
     for (int k = 0; k < scene->n_load; k++) {
         if (scene->load[k].body_name != NULL) warn_follower(scene, &scene->load[k], stream);
@@ -196,6 +262,8 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream) {
     if (scene->aero.node) warn_polars(&scene->aero.polars, stream);
     if (scene->control.node) warn_law(&scene->control, stream);
     const bough_scene_simulation *s = &scene->simulation;
+    warn_settings(scene, stream);
+    warn_companions(scene, stream);
     warn_output(s, stream);
     warn_scheme(s, stream);
     warn_solver(&s->master, "simulation.master", stream);
