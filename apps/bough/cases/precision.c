@@ -85,7 +85,7 @@ enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 12, SHORT = 100 }
 
 // A line of table.txt, or of table.csv, which has keys, all digits and more columns.
 typedef struct line {
-    bool csv;
+    bool csv, head;
     int n;
     char field[COLUMNS][sizeof((bough_status *)NULL)->message];
 } line;
@@ -100,74 +100,54 @@ static void put_either(line *l, const char *csv, const char *text) {
     put(l, "%.*s", l->csv ? (int)sizeof *l->field : 40, l->csv ? csv : text);
 }
 
-static void put_number(line *l, bool known, double value) {
-    if (known && isfinite(value))
+// A number or its headings; `text` NULL: only in the CSV.
+static void put_number(line *l, const char *csv, const char *text, bool known, double value) {
+    if (!l->csv && !text) return;
+    if (l->head)
+        put(l, "%s", l->csv ? csv : text);
+    else if (known && isfinite(value))
         put(l, l->csv ? "%.9g" : "%.3g", value);
     else
         put_either(l, "", "-");
 }
 
-static void put_head(line *l, const bough_study *s) {
-    put(l, "run");
-    for (int i = 0; i < s->grid.n; i++) put_either(l, s->grid.axis[i].key, s->grid.axis[i].label);
-    put(l, "status");
-    if (l->csv) put(l, "time [s]");
-    put(l, "wall [s]");
-    put(l, "cpu [s]");
-    put_either(l, "real_time_factor [1]", "x real time");
-    for (int i = 0; i < s->n_measure; i++) {
-        const bough_study_measure *m = &s->measure[i];
-        put(l, "%.120s [%.60s]", m->name, m->unit);
-        if (l->csv)
-            put(l, "%.120s estimated [%.50s]", m->name, m->unit);
-        else
-            put(l, "estimated");
-    }
-    if (l->csv) put(l, "defect_max [1]");
-    put_either(l, "defect_rms [1]", "defect rms [1]");
-    put_either(l, "energy_residual [J]", "energy defect [1]");
-    if (l->csv) put(l, "energy_exchanged [J]");
-    if (l->csv) put(l, "diagnosis");
+static void put_measure(line *l, const bough_study_measure *m, bool known, double error, double estimate) {
+    char heading[200], estimated[200];
+    snprintf(heading, sizeof heading, "%.120s [%.60s]", m->name, m->unit);
+    snprintf(estimated, sizeof estimated, "%.120s estimated [%.50s]", m->name, m->unit);
+    put_number(l, heading, heading, known, error);
+    put_number(l, estimated, "estimated", known, estimate);
 }
 
 static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_study *s = results->study;
-    l->n = 0;
-    if (row == HEAD) {
-        put_head(l, s);
-        return;
-    }
     const bough_case_result *r = result_of(results, row);
     const bough_coupling_report *k = &r->coupling;
-    char status[40];
-    bool failed = r->done && !bough_held(r);
+    char number[12], status[40];
+    bool failed = r->done && !bough_held(r), exchanges = l->csv || k->energy_exchanged > 0;
+    l->n = 0;
+    l->head = row == HEAD;
     case_status(r, status);
-    if (row < 0)
-        put(l, "reference");
-    else
-        put(l, "%d", row + 1);
+    snprintf(number, sizeof number, "%d", row + 1);
+    put(l, "%s", l->head ? "run" : row == REFERENCE ? "reference" : number);
     for (int i = 0; i < s->grid.n; i++) {
+        const bough_study_axis *axis = &s->grid.axis[i];
         const char *value = bough_study_value(s, cell_of(s, row), i);
-        put_either(l, value, value[0] ? value : "as the scene");
+        put_either(l, l->head ? axis->key : value, l->head ? axis->label : value[0] ? value : "as the scene");
     }
-    put_either(l, failed ? "failed" : status, status);
-    if (l->csv) put_number(l, r->done, r->time);
-    put_number(l, r->done, r->wall);
-    put_number(l, r->done, r->cpu);
-    put_number(l, r->done, r->time / r->wall);
-    for (int i = 0; i < s->n_measure; i++) {
-        put_number(l, r->done && (l->csv || !failed), r->error[i]);
-        put_number(l, r->done && (l->csv || !failed), r->estimate[i]);
-    }
-    if (l->csv) put_number(l, r->done, k->defect_max);
-    put_number(l, r->done, k->defect_rms);
-    if (!l->csv) {
-        put_number(l, r->done && k->energy_exchanged > 0, k->energy_residual / k->energy_exchanged);
-        return;
-    }
-    put_number(l, r->done, k->energy_residual);
-    put_number(l, r->done, k->energy_exchanged);
-    put(l, "%s", failed ? r->outcome.message : "");
+    put_either(l, l->head ? "status" : failed ? "failed" : status, l->head ? "status" : status);
+    put_number(l, "time [s]", NULL, r->done, r->time);
+    put_number(l, "wall [s]", "wall [s]", r->done, r->wall);
+    put_number(l, "cpu [s]", "cpu [s]", r->done, r->cpu);
+    put_number(l, "real_time_factor [1]", "x real time", r->done, r->time / r->wall);
+    for (int i = 0; i < s->n_measure; i++)
+        put_measure(l, &s->measure[i], r->done && (l->csv || !failed), r->error[i], r->estimate[i]);
+    put_number(l, "defect_max [1]", NULL, r->done, k->defect_max);
+    put_number(l, "defect_rms [1]", "defect rms [1]", r->done, k->defect_rms);
+    put_number(l, "energy_residual [J]", "energy defect [1]", r->done && exchanges,
+               k->energy_residual / (l->csv ? 1 : k->energy_exchanged));
+    put_number(l, "energy_exchanged [J]", NULL, r->done, k->energy_exchanged);
+    if (l->csv) put(l, "%s", l->head ? "diagnosis" : failed ? r->outcome.message : "");
 }
 
 // -- text -----------------------------------------------------------------------------------------
