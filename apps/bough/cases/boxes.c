@@ -6,24 +6,25 @@
 #include <pthread.h>
 
 typedef struct place {
-    bough_arena *arena; // memory of the box; NULL: there is no box
+    bough_arena *arena; // memory of the box; NULL: it is not generated
     bough_wind_iec_def def;
     bough_wind_box box;
-    int runs; // number of runs that use the box or wait for it
-    bool making;
+    int runs;              // number of runs that use the box or wait for it
+    pthread_mutex_t mutex; // held while the box is generated
 } place;
 
 struct bough_boxes {
     int n;
-    place *place; // (n) as many as simultaneous runs, so that there is always a free one
-    pthread_mutex_t mutex;
-    pthread_cond_t made;
+    place *place;          // (n) as many as simultaneous runs, so that there is always a free one
+    pthread_mutex_t mutex; // guards which box has which place, and the numbers of runs
 };
 
 static void release(void *self) {
     bough_boxes *b = self;
-    for (int i = 0; i < b->n; i++) bough_arena_destroy(b->place[i].arena);
-    pthread_cond_destroy(&b->made);
+    for (int i = 0; i < b->n; i++) {
+        bough_arena_destroy(b->place[i].arena);
+        pthread_mutex_destroy(&b->place[i].mutex);
+    }
     pthread_mutex_destroy(&b->mutex);
 }
 
@@ -31,21 +32,24 @@ bough_boxes *bough_boxes_create(bough_arena *arena, int runs) {
     bough_boxes *b = bough_arena_take(arena, sizeof *b);
     b->n = runs;
     b->place = bough_arena_take(arena, (size_t)runs * sizeof *b->place);
+    for (int i = 0; i < runs; i++) pthread_mutex_init(&b->place[i].mutex, NULL);
     pthread_mutex_init(&b->mutex, NULL);
-    pthread_cond_init(&b->made, NULL);
     bough_arena_on_destroy(arena, release, b);
     return b;
 }
 
-// The place of this box, or else one that no run uses.
+// The place of this box, or else one that no run uses, emptied for it.
 static place *find(bough_boxes *b, const bough_wind_iec_def *def) {
     place *unused = NULL;
     for (int i = 0; i < b->n; i++) {
         place *p = &b->place[i];
-        bool there = p->making || p->arena;
+        bool there = p->runs > 0 || p->arena;
         if (there && bough_turbulence_equal(&p->def, def)) return p;
         if (p->runs == 0 && (!unused || !there)) unused = p;
     }
+    bough_arena_destroy(unused->arena);
+    unused->arena = NULL;
+    unused->def = *def;
     return unused;
 }
 
@@ -69,23 +73,15 @@ const bough_wind_box *bough_boxes_lend(bough_boxes *b, const bough_scene *scene)
     pthread_mutex_lock(&b->mutex);
     place *p = find(b, &def);
     p->runs++;
-    bool mine = !p->making && !(p->arena && bough_turbulence_equal(&p->def, &def));
-    if (mine) {
-        // generated without the lock, so that other runs continue
-        p->def = def;
-        p->making = true;
-        pthread_mutex_unlock(&b->mutex);
-        bough_arena_destroy(p->arena);
-        make(p);
-        pthread_mutex_lock(&b->mutex);
-        p->making = false;
-        pthread_cond_broadcast(&b->made);
-    }
-    while (p->making) pthread_cond_wait(&b->made, &b->mutex);
-    bool there = p->arena != NULL;
-    if (!there) p->runs--;
     pthread_mutex_unlock(&b->mutex);
-    return there ? &p->box : NULL;
+    // runs with other boxes continue meanwhile
+    pthread_mutex_lock(&p->mutex);
+    if (!p->arena) make(p);
+    bool there = p->arena != NULL;
+    pthread_mutex_unlock(&p->mutex);
+    if (there) return &p->box;
+    bough_boxes_give_back(b, &p->box);
+    return NULL;
 }
 
 void bough_boxes_give_back(bough_boxes *b, const bough_wind_box *box) {
