@@ -137,9 +137,7 @@ static bough_status same_files(bough_arena *arena, const bough_scene *scene, uin
 static bough_status open_recorder(bough_arena *arena, case_run *r) {
     bough_recorder_def def = {
         .folder = r->drive->folder, .title = r->chosen->settings, .channels = &r->run.channels};
-    if (!def.folder) return bough_ok();
-    BOUGH_TRY(bough_folder_make(def.folder));
-    return bough_recorder_open(arena, &def, &r->recorder);
+    return def.folder ? bough_recorder_open(arena, &def, &r->recorder) : bough_ok();
 }
 
 static bough_status build(bough_arena *arena, case_run *r) {

@@ -10,20 +10,15 @@
 
 // -- names ----------------------------------------------------------------------------------------
 
-typedef char case_name[24];
+typedef char case_name[24], case_file[48];
 
 // Compared runs are named by their fingerprints, since a grid may grow; other cases by their numbers.
-static void name_of(const bough_study *s, const bough_case *c, case_name name) {
+static void name_of(const bough_study *s, const bough_case *c, case_name name, case_file file) {
     if (s->is.compared)
         snprintf(name, sizeof(case_name), "%016" PRIx64, c->fingerprint);
     else
         snprintf(name, sizeof(case_name), "%06d", (int)(c - s->cases) + 1);
-}
-
-static bough_status path_of(const char *folder, const case_name name, char path[BOUGH_PATH_MAX]) {
-    char file[48];
-    snprintf(file, sizeof file, "cases/%s.case", name);
-    return bough_folder_path(folder, file, path);
+    snprintf(file, sizeof(case_file), "cases/%s.case", name);
 }
 
 bough_status bough_store_open(const char *folder) {
@@ -157,11 +152,11 @@ static void move_result(rows *r, const bough_study *s, const bough_case *c, boug
 bough_status bough_store_write(const char *folder, const bough_study *s, const bough_case *c,
                                bough_case_result *r) {
     case_name name;
+    case_file file;
     char path[BOUGH_PATH_MAX], code[12];
     FILE *f;
-    name_of(s, c, name);
-    BOUGH_TRY(path_of(folder, name, path));
-    BOUGH_TRY(bough_folder_open_partial(path, &f));
+    name_of(s, c, name, file);
+    BOUGH_TRY(bough_folder_open(folder, file, path, &f));
     fprintf(f, "case %s fingerprint %016" PRIx64 "\noutcome ", name, c->fingerprint);
     snprintf(code, sizeof code, "%d", (int)r->outcome.code);
     put_text(f, code, bough_is_ok(&r->outcome) ? "" : r->outcome.message);
@@ -182,11 +177,14 @@ static bool take_head(FILE *f, const case_name name, uint64_t fingerprint, bough
 }
 
 // Opens a result after its head; *file is NULL if there is none or it belongs to other input.
-static bough_status open_case(const char *folder, const case_name name, const bough_case *c,
+static bough_status open_case(const char *folder, const bough_study *s, const bough_case *c,
                               bough_status *outcome, FILE **file) {
+    case_name name;
+    case_file place;
     char path[BOUGH_PATH_MAX], why[BOUGH_INPUT_REASON];
     *file = NULL;
-    BOUGH_TRY(path_of(folder, name, path));
+    name_of(s, c, name, place);
+    BOUGH_TRY(bough_folder_path(folder, place, path));
     errno = 0;
     FILE *found = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!found && errno != ENOENT) return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
@@ -200,9 +198,9 @@ static bough_status open_case(const char *folder, const case_name name, const bo
 bough_status bough_store_read(const char *folder, const bough_study *s, const bough_case *c,
                               bough_case_result *r) {
     case_name name;
+    case_file place;
     FILE *f;
-    name_of(s, c, name);
-    bough_status status = open_case(folder, name, c, &r->outcome, &f);
+    bough_status status = open_case(folder, s, c, &r->outcome, &f);
     r->done = false;
     if (!f) return status;
     rows file = {f, true, true};
@@ -210,18 +208,16 @@ bough_status bough_store_read(const char *folder, const bough_study *s, const bo
     r->done = file.good && take_word(f, "end");
     fclose(f);
     if (r->done) return status;
-    return bough_fail(BOUGH_IO,
-                      "the result '%.200s/cases/%s.case' is damaged: remove it, and the same command "
-                      "runs the case again",
-                      folder, name);
+    name_of(s, c, name, place);
+    return bough_fail(
+        BOUGH_IO, "the result '%.200s/%s' is damaged: remove it, and the same command runs the case again",
+        folder, place);
 }
 
 bool bough_store_has(const char *folder, const bough_study *s, const bough_case *c) {
-    case_name name;
     bough_status outcome;
     FILE *f;
-    name_of(s, c, name);
-    open_case(folder, name, c, &outcome, &f);
+    open_case(folder, s, c, &outcome, &f);
     if (f) fclose(f);
     return f != NULL;
 }

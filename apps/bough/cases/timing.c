@@ -167,7 +167,6 @@ bough_status bough_timing_conclude(bough_arena *arena, const bough_study_results
     t.cell = bough_arena_take(arena, (size_t)study->n_case * sizeof *t.cell);
     t.reference = bough_study_series_take(arena, study);
     t.series = bough_study_series_take(arena, study);
-    BOUGH_TRY(bough_folder_make(options->folder));
     BOUGH_TRY(run_all(&t));
     BOUGH_TRY(bough_folder_write(options->folder, "timing.csv", write_csv, &t));
     BOUGH_TRY(bough_folder_write(options->folder, "table.txt", print_times, &t));

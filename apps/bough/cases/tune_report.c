@@ -176,7 +176,6 @@ void bough_tune_print_settings(const void *self, FILE *stream) {
 
 bough_status bough_tune_write(bough_tune_state *t) {
     const char *folder = t->options->folder;
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "tune.csv", write_table, t));
     BOUGH_TRY(bough_arena_use(draw, t));
     return bough_folder_write(folder, "tune.yaml", bough_tune_print_settings, t);

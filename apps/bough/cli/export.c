@@ -333,9 +333,9 @@ static bough_status add_library(zip *archive) {
 
 enum { OWN = 3 }; // files beside the scene's: description, library, settings
 
-static bough_status write_archive(export *x, const char *path) {
+static bough_status write_archive(export *x, const char *folder, char *path) {
     FILE *file;
-    BOUGH_TRY(bough_folder_open_partial(path, &file));
+    BOUGH_TRY(bough_folder_open(folder, "bough.fmu", path, &file));
     zip archive = {.arena = x->arena, .file = file};
     archive.entry = bough_arena_take(x->arena, ((size_t)x->files.n + OWN) * sizeof *archive.entry);
     bough_status status = add_text(x, "modelDescription.xml", put_description, &archive);
@@ -381,11 +381,8 @@ static bough_status export_scene(bough_arena *arena, const void *given) {
     x.files = bough_scene_list_files(arena, x.simulation->scene);
     BOUGH_TRY(place_files(&x));
     make_token(&x);
-    const char *folder = bough_out_folder(arena, &named);
     char path[BOUGH_PATH_MAX];
-    BOUGH_TRY(bough_folder_make(folder));
-    BOUGH_TRY(bough_folder_path(folder, "bough.fmu", path));
-    BOUGH_TRY(write_archive(&x, path));
+    BOUGH_TRY(write_archive(&x, bough_out_folder(arena, &named), path));
     printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_variable - x.n_input, path);
     return bough_ok();
 }

@@ -431,7 +431,6 @@ static bough_status find_whole(bough_arena *arena, const bough_options *options,
     bough_status status = bough_vibration_compare(arena, s, &v, &compared);
     if (!bough_is_ok(&status)) printf("no modes of another mesh: %s\n", status.message);
     if (bough_is_ok(&status) && compared) print_mesh(&v);
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_modes, &x));
     if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_shapes, &x));
     if (s->scene->modes.linear) BOUGH_TRY(write_linear(arena, s, v.time, folder));
@@ -493,7 +492,6 @@ static bough_status find(bough_arena *arena, const void *given) {
     const char *folder = bough_out_folder(arena, options);
     rod_list rods = {bough_steady_rods(s), bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods.rod)};
     BOUGH_TRY(solve_rods(arena, s, rods.rod));
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "modes.csv", write_rod_modes, &rods));
     if (s->scene->modes.shapes) BOUGH_TRY(bough_folder_write(folder, "shapes.csv", write_rod_shapes, &rods));
     printf("out: %s\n", folder);

@@ -551,7 +551,6 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options,
     }
     if (until_unstable) BOUGH_TRY(print_boundary(arena, options, &s, s.n_solved - 1));
     name_lines(arena, &s);
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "campbell.csv", write_table, &s));
     BOUGH_TRY(draw(arena, &s, folder));
     printf("out: %s\n", folder);

@@ -374,7 +374,6 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
     BOUGH_TRY(bough_simulation_channels(s, &channels));
     path_table t = {.channels = &channels};
     t.value = bough_arena_doubles(arena, (size_t)channels.count + 1);
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_open(folder, "static-path.csv", path, &t.file));
     write_path_head(&t);
     bough_status followed =
@@ -448,7 +447,6 @@ static bough_status find(bough_arena *arena, const void *given) {
     }
     print_modal(x.simulation);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "static.csv", write_rods, &x));
     BOUGH_TRY(write_channels(&x, &mesh, folder));
     printf("out: %s\n", folder);

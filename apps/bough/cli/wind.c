@@ -26,7 +26,6 @@ static bough_status wind(bough_arena *arena, const void *options) {
     printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz, box->bottom);
     printf("times: %d, every %.6g s, period %.6g s\n", box->n_time, box->dt, box->duration);
     printf("mean_speed: %.6g m/s at %.6g m\n", box->mean, box->hub);
-    BOUGH_TRY(bough_folder_make(folder));
     BOUGH_TRY(bough_folder_write(folder, "wind.bts", put_box, s));
     printf("wind: %s/wind.bts\n", folder);
     return bough_ok();

@@ -47,8 +47,10 @@ static void name_partial(const char *path, partial_path partial) {
     snprintf(partial, sizeof(partial_path), "%s.partial", path);
 }
 
-bough_status bough_folder_open_partial(const char *path, FILE **file) {
+bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file) {
     partial_path partial;
+    BOUGH_TRY(bough_folder_make(folder));
+    BOUGH_TRY(bough_folder_path(folder, name, path));
     name_partial(path, partial);
     // without O_NONBLOCK the call would wait for a pipe's reader
     int descriptor = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
@@ -57,11 +59,6 @@ bough_status bough_folder_open_partial(const char *path, FILE **file) {
     bough_status status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
     if (descriptor >= 0) close(descriptor);
     return status;
-}
-
-bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file) {
-    BOUGH_TRY(bough_folder_path(folder, name, path));
-    return bough_folder_open_partial(path, file);
 }
 
 bough_status bough_folder_write(const char *folder, const char *name,
@@ -138,10 +135,10 @@ static void close_growing(void *self) {
 bough_status bough_growing_open(bough_arena *arena, const char *folder, const char *name, bough_kept kept,
                                 bough_growing *g) {
     *g = (bough_growing){.count = kept.count};
-    BOUGH_TRY(bough_folder_path(folder, name, g->path));
     bough_arena_on_destroy(arena, close_growing, g);
-    return kept.count > 0 ? reopen(g->path, kept.bytes, &g->file)
-                          : bough_folder_open_partial(g->path, &g->file);
+    if (kept.count == 0) return bough_folder_open(folder, name, g->path, &g->file);
+    BOUGH_TRY(bough_folder_path(folder, name, g->path));
+    return reopen(g->path, kept.bytes, &g->file);
 }
 
 bough_status bough_growing_keep(const bough_growing *g, bough_kept *kept) {

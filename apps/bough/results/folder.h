@@ -13,13 +13,11 @@ bough_status bough_folder_make(const char *path);
 // path = folder/name; refuses what does not fit into BOUGH_PATH_MAX.
 bough_status bough_folder_path(const char *folder, const char *name, char *path);
 
-// Opens path.partial for writing.
-bough_status bough_folder_open_partial(const char *path, FILE **file);
-
-// The same for a file of the folder; its path goes to `path` (BOUGH_PATH_MAX).
+// Makes the folder and opens folder/name.partial for writing; the path without ".partial" goes to `path`
+// (BOUGH_PATH_MAX).
 bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file);
 
-// Writes a whole file of the folder: what `write` prints of `self`.
+// Writes a whole file of the folder, which is made: what `write` prints of `self`.
 bough_status bough_folder_write(const char *folder, const char *name,
                                 void (*write)(const void *self, FILE *file), const void *self);
 
