@@ -97,10 +97,8 @@ static bough_status take_errors(const measurement *m, bough_arena *arena, bough_
 static bough_status run_in(bough_arena *arena, void *self) {
     const measurement *m = self;
     const bough_tune_options *o = m->tune->options;
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene;
+    bough_scene *scene = bough_scene_copy(arena, m->tune->scene);
     bough_run run;
-    BOUGH_TRY(bough_scene_read(arena, NULL, o->scene, o->set, o->n_set, &errors, &scene));
     apply(m->tune, &m->point->settings, scene);
     scene->simulation.error_estimate = m->estimate ? BOUGH_SCENE_COMPANION : BOUGH_SCENE_NO_ESTIMATE;
     BOUGH_TRY(bough_run_create(arena, scene, &run));
@@ -398,10 +396,7 @@ static bough_status conclude(const bough_tune_state *t) {
         (moves ? 1 : 4) * t->error);
 }
 
-bough_status bough_tune(bough_arena *arena, const bough_tune_options *options) {
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene;
-    BOUGH_TRY(bough_scene_read(arena, NULL, options->scene, options->set, options->n_set, &errors, &scene));
+bough_status bough_tune(bough_arena *arena, const bough_scene *scene, const bough_tune_options *options) {
     bough_tune_state *t = bough_arena_take(arena, sizeof *t);
     *t = (bough_tune_state){.options = options, .scene = scene, .chosen = -1};
     t->error = options->error > 0 ? options->error : scene->simulation.accuracy;

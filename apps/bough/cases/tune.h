@@ -35,19 +35,16 @@ typedef struct bough_tune_point {
 } bough_tune_point;
 
 typedef struct bough_tune_options {
-    const char *scene; // path
-    int n_set;
-    const char *const *set; // (n_set) replacements in the scene
-    double error;           // error bound relative to the range; 0: the scene's accuracy
-    double span;            // of the interval from the start [s]
-    const char *folder;     // for the results; made if missing
-    bool (*stop)(void);     // NULL: never stops
-    FILE *stream;           // receives the table
+    double error;       // error bound relative to the range; 0: the scene's accuracy
+    double span;        // of the interval from the start [s]
+    const char *folder; // for the results; made if missing
+    bool (*stop)(void); // NULL: never stops
+    FILE *stream;       // receives the table
 } bough_tune_options;
 
 // Makes the runs and writes tune.csv, tune.svg and tune.yaml. BOUGH_FAILED if no settings meet the error: the
-// files then have those with the smallest error. The scene must be valid.
-bough_status bough_tune(bough_arena *arena, const bough_tune_options *options);
+// files then have those with the smallest error.
+bough_status bough_tune(bough_arena *arena, const bough_scene *scene, const bough_tune_options *options);
 
 // -- what tune.c and tune_report.c share ----------------------------------------------------------
 

@@ -107,7 +107,7 @@ static void add_runs(bough_chart *chart, const bough_tune_state *t) {
 static bough_status draw(bough_arena *arena, void *self) {
     const bough_tune_state *t = self;
     const char *heading = bough_arena_print(arena, "CPU time of %.4g s [s]", t->options->span);
-    bough_chart chart = bough_chart_start(arena, t->scene->title ? t->scene->title : t->options->scene, 1);
+    bough_chart chart = bough_chart_start(arena, t->scene->title ? t->scene->title : t->scene->file, 1);
     bough_chart_add_panel(&chart, heading, "whole error over the range (forces and moments: a quarter)", true,
                           true);
     add_front(&chart, t);
@@ -142,7 +142,7 @@ static bool has_new_mesh(const bough_tune_state *t, int body) {
 static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     const bough_tune_settings *s = &t->point[t->chosen].settings;
     bool whole = bough_scheme_at(s->scheme)->one_system;
-    if (words) fprintf(stream, "# bough run %s", t->options->scene);
+    if (words) fprintf(stream, "# bough run %s", t->scene->file);
     fprintf(stream,
             words ? " --set 'simulation.macro_step=%.9g ms' --set 'simulation.coupling={scheme: %s}'"
                     " --set 'simulation.%s="

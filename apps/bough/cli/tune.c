@@ -27,15 +27,12 @@ static bough_status perform(bough_arena *arena, const void *given) {
     bough_scene *scene;
     BOUGH_TRY(bough_open_scene(arena, options, &scene));
     bough_tune_options how = own->how;
-    how.scene = options->operand;
-    how.n_set = options->set.n;
-    how.set = options->set.text;
     how.span = fmin(how.span > 0 ? how.span : default_span, scene->simulation.duration);
     how.folder = bough_out_folder(arena, options);
     how.stop = bough_stop_requested;
     how.stream = stdout;
     bough_stop_listen();
-    bough_status status = bough_tune(arena, &how);
+    bough_status status = bough_tune(arena, scene, &how);
     if (bough_is_ok(&status)) printf("out: %s: tune.csv, tune.svg, tune.yaml\n", how.folder);
     return status;
 }
