@@ -55,7 +55,8 @@ static const char *next_value(bough_arena *arena, const char **rest) {
     size_t n = 0;
     if (*from == '\0') return NULL;
     for (; from[n] != '\0' && (quote || depth > 0 || from[n] != ','); n++) {
-        if (quote ? from[n] == quote : from[n] == '"' || from[n] == '\'') quote = quote ? '\0' : from[n];
+        if (quote ? from[n] == quote : from[n] == '"' || from[n] == '\'')
+            quote = (char)(quote ? '\0' : from[n]);
         if (!quote) depth += (from[n] == '[' || from[n] == '{') - (from[n] == ']' || from[n] == '}');
     }
     *rest = from + n + (from[n] == ',');
@@ -206,10 +207,18 @@ static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulat
 
 // -- points ---------------------------------------------------------------------------------------
 
+// At a point; with `ratio` (NULL: without) those of the other mesh, and the error over the difference of both.
 static bough_status find_modes(bough_arena *arena, const bough_options *options, int point, const sweep *s,
-                               bough_simulation **sim, bough_vibration *v) {
+                               double *ratio, bough_simulation **sim, bough_vibration *v) {
     bough_options at = options_at(arena, options, s, point);
-    BOUGH_TRY(bough_open(arena, &at, sim));
+    bough_scene *scene;
+    BOUGH_TRY(bough_open_scene(arena, &at, &scene));
+    if (ratio) {
+        bough_scene *coarser = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
+        *ratio = bough_coarser_ratio(scene, coarser);
+        scene = coarser;
+    }
+    BOUGH_TRY(bough_simulation_build(arena, scene, sim));
     BOUGH_TRY(bough_simulation_known(*sim, "it has no modes"));
     return bough_vibration_find(arena, *sim, (*sim)->scene->modes.count, v);
 }
@@ -241,7 +250,7 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
     bough_arena *arena = bough_arena_child(keep);
     bough_simulation *sim;
     bough_vibration v;
-    bough_status status = find_modes(arena, options, point, s, &sim, &v);
+    bough_status status = find_modes(arena, options, point, s, NULL, &sim, &v);
     if (bough_is_ok(&status))
         status = add_point(keep, arena, sim, &v, point, track, s);
     else if (status.message[0])
@@ -441,19 +450,10 @@ static bough_status grow(bough_arena *keep, const bough_options *options, const 
             return bough_fail(BOUGH_INVALID, "--until needs numbers with one unit, got %s=%s, %s", s->key[k],
                               value[0], value[1]);
     }
-    bough_options at = options_at(arena, options, &one, 0);
-    bough_scene *scene;
     bough_simulation *sim;
     bough_vibration v;
-    bough_status status = bough_open_scene(arena, &at, &scene);
     *to = (growth){.part = part, .rate = -HUGE_VAL};
-    if (bough_is_ok(&status) && other) {
-        bough_scene *coarser = bough_coarser_scene(arena, scene, BOUGH_COARSER_MESH);
-        to->ratio = bough_coarser_ratio(scene, coarser);
-        scene = coarser;
-    }
-    if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &sim);
-    if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, scene->modes.count, &v);
+    bough_status status = find_modes(arena, options, 0, &one, other ? &to->ratio : NULL, &sim, &v);
     for (int k = 0; bough_is_ok(&status) && k < v.found; k++) {
         const bough_scene_mode *m = &v.mode[k];
         double rate = growth_of(m);
