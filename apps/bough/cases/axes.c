@@ -83,7 +83,7 @@ static void check_different(bough_schema_reader *r, const bough_study_axis *axis
 static void read_axis(bough_schema_reader *r, const bough_node *key, const bough_node *values,
                       bough_study_axis *axis) {
     char shown[64];
-    *axis = (bough_study_axis){.node = key, .key = key->text, .label = key->text};
+    *axis = (bough_study_axis){.key = key->text, .label = key->text};
     if (values->kind != BOUGH_SEQUENCE || values->n == 0) {
         bough_schema_error(r, values, key->text, "expected a list of values, got %s",
                            bough_node_shown(values, shown));

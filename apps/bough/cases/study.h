@@ -41,7 +41,6 @@ typedef struct bough_study_settings {
 
 // A key of the grid with its values.
 typedef struct bough_study_axis {
-    const bough_node *node; // of the key
     const char *key;
     const char *label; // the end of the key that distinguishes it from the others
     bough_study_settings value;

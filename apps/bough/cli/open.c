@@ -23,28 +23,26 @@ static bool is_scene(const char *path) {
 }
 
 // Whether a file is called scene.yaml or like the directory.
-static bool is_first(const char *file, const char *folder, size_t length) {
-    const char *name = folder + length;
-    while (name > folder && name[-1] != '/') name--;
-    size_t own = (size_t)(folder + length - name);
-    bool like = strncmp(file, name, own) == 0 && (strcmp(file + own, ".yaml") == 0);
+static bool is_first(const char *file, const char *folder) {
+    const char *own = bough_file_name(folder);
+    bool like = strncmp(file, own, strlen(own)) == 0 && strcmp(file + strlen(own), ".yaml") == 0;
     return like || strcmp(file, "scene.yaml") == 0;
 }
 
 bough_status bough_find_scene(bough_arena *arena, bough_options *options) {
     struct dirent **entry;
-    const char *folder = options->operand, *only = NULL, *first = NULL;
-    size_t length = strlen(folder);
-    while (length > 1 && folder[length - 1] == '/') length--;
+    char *folder = bough_arena_string(arena, options->operand);
+    const char *only = NULL, *first = NULL;
+    for (size_t n = strlen(folder); n > 1 && folder[n - 1] == '/'; n--) folder[n - 1] = '\0';
     int n = scandir(folder, &entry, NULL, alphasort), found = 0;
     char list[400] = "";
     for (int k = 0; k < n; k++) {
         const char *name = entry[k]->d_name;
-        const char *path = bough_arena_print(arena, "%.*s/%s", (int)length, folder, name);
+        const char *path = bough_arena_print(arena, "%s/%s", folder, name);
         bool named = bough_ends_with(name + 1, ".yaml") || bough_ends_with(name + 1, ".yml");
         if (named && is_scene(path)) {
             only = path;
-            if (is_first(name, folder, length)) first = path;
+            if (is_first(name, folder)) first = path;
             size_t used = strlen(list);
             if (found++ < SHOWN)
                 snprintf(list + used, sizeof list - used, "%s%.40s", used > 0 ? ", " : "", name);
@@ -53,10 +51,10 @@ bough_status bough_find_scene(bough_arena *arena, bough_options *options) {
     }
     if (n < 0) return bough_ok(); // no directory
     free(entry);
-    if (found == 0) return bough_fail(BOUGH_INVALID, "'%.200s' holds no scene", folder);
+    if (found == 0) return bough_fail(BOUGH_INVALID, "'%.200s' holds no scene", options->operand);
     if (found > 1 && !first)
-        return bough_fail(BOUGH_INVALID, "'%.200s' holds %d scenes; name one of them: %s%s", folder, found,
-                          list, found > SHOWN ? ", ..." : "");
+        return bough_fail(BOUGH_INVALID, "'%.200s' holds %d scenes; name one of them: %s%s", options->operand,
+                          found, list, found > SHOWN ? ", ..." : "");
     options->operand = first ? first : only;
     return bough_ok();
 }
