@@ -37,11 +37,12 @@ typedef struct sweep {
     const sweep_mode **named; // (n_line) a mode with the most frequent name of the line
 } sweep;
 
-// The modes of the previous point, to be found again.
+// The modes of a point, to be found again at the next one.
 typedef struct tracks {
-    int n, n_state;
-    int *line;      // (n)
-    double *shape;  // (n × 2 × n_state)
+    bough_arena *arena; // of all that follows; NULL before the first point
+    bough_simulation *simulation;
+    bough_vibration modes;
+    int *line;      // (modes.found)
     double *weight; // (n_state) W of products: states count in units of their scales
 } tracks;
 
@@ -108,38 +109,37 @@ static bough_options options_at(bough_arena *arena, const bough_options *options
 
 // -- lines ----------------------------------------------------------------------------------------
 
-// aᴴ W b of complex vectors, real before imaginary part (2 × n).
-static void product(const tracks *t, const double *a, const double *b, double value[2]) {
-    int n = t->n_state;
-    value[0] = value[1] = 0;
-    for (int i = 0; i < n; i++) {
-        value[0] += t->weight[i] * (a[i] * b[i] + a[n + i] * b[n + i]);
-        value[1] += t->weight[i] * (a[i] * b[n + i] - a[n + i] * b[i]);
-    }
-}
+static int count_states(const tracks *t) { return t->simulation->master->assembly->n_state; }
 
-static const double *shape_of(const tracks *t, int k) {
-    return t->shape + (size_t)k * 2 * (size_t)t->n_state;
+// aᴴ W b of the shapes of two modes, real and imaginary part.
+static void product(const tracks *t, const bough_eigen_pair *a, const bough_eigen_pair *b, double value[2]) {
+    value[0] = value[1] = 0;
+    for (int i = 0; i < count_states(t); i++) {
+        value[0] +=
+            t->weight[i] * (a->shape_real[i] * b->shape_real[i] + a->shape_imag[i] * b->shape_imag[i]);
+        value[1] +=
+            t->weight[i] * (a->shape_real[i] * b->shape_imag[i] - a->shape_imag[i] * b->shape_real[i]);
+    }
 }
 
 // Similarity of each mode of `now` to each mode of `before`, theory (103): alike (before × now), 0 to 1.
 // Products alone do not distinguish shapes that are far from orthogonal, as near flutter.
-static void compare(bough_arena *arena, const tracks *before, const tracks *now, double *alike) {
-    size_t n = (size_t)before->n;
+static void compare(const tracks *before, const tracks *now, double *alike) {
+    bough_arena *arena = now->arena;
+    const bough_eigen_pair *pair = before->modes.pair;
+    size_t n = (size_t)before->modes.found;
     double *matrix = bough_arena_doubles(arena, 2 * n * n + 1), *part = bough_arena_doubles(arena, 2 * n + 1);
     int *pivot = bough_arena_take(arena, (n + 1) * sizeof *pivot);
     double *size = bough_arena_doubles(arena, n + 1);
     for (size_t k = 0; k < n; k++) {
-        for (size_t i = 0; i < n; i++)
-            product(before, shape_of(before, (int)i), shape_of(before, (int)k), matrix + 2 * (k * n + i));
+        for (size_t i = 0; i < n; i++) product(before, &pair[i], &pair[k], matrix + 2 * (k * n + i));
         size[k] = matrix[2 * (k * n + k)];
     }
-    bool independent = bough_complex_factor(before->n, matrix, pivot);
-    for (int j = 0; j < now->n; j++) {
+    bool independent = bough_complex_factor((int)n, matrix, pivot);
+    for (int j = 0; j < now->modes.found; j++) {
         double sum = 0, *to = alike + (size_t)j * n;
-        for (size_t k = 0; k < n; k++)
-            product(before, shape_of(before, (int)k), shape_of(now, j), part + 2 * k);
-        if (independent) bough_complex_solve(before->n, matrix, pivot, part);
+        for (size_t k = 0; k < n; k++) product(before, &pair[k], &now->modes.pair[j], part + 2 * k);
+        if (independent) bough_complex_solve((int)n, matrix, pivot, part);
         for (size_t k = 0; k < n; k++) {
             double square = part[2 * k] * part[2 * k] + part[2 * k + 1] * part[2 * k + 1];
             sum += to[k] = independent ? square * size[k] : square / size[k];
@@ -149,51 +149,38 @@ static void compare(bough_arena *arena, const tracks *before, const tracks *now,
 }
 
 // Continues the lines of the most similar modes, the most similar first; other modes begin new lines.
-static void find_lines(bough_arena *arena, const tracks *before, tracks *now, sweep *s) {
-    size_t n = (size_t)before->n;
-    double *alike = bough_arena_doubles(arena, n * (size_t)now->n + 1);
-    bool *taken = bough_arena_take(arena, n + 1);
-    compare(arena, before, now, alike);
-    for (int j = 0; j < now->n; j++) now->line[j] = -1;
+static void find_lines(const tracks *before, tracks *now, sweep *s) {
+    size_t n = (size_t)before->modes.found, n_now = (size_t)now->modes.found;
+    double *alike = bough_arena_doubles(now->arena, n * n_now + 1);
+    bool *taken = bough_arena_take(now->arena, n + 1);
+    now->line = bough_arena_take(now->arena, n_now * sizeof *now->line);
+    compare(before, now, alike);
+    for (size_t j = 0; j < n_now; j++) now->line[j] = -1;
     for (;;) {
         double most = least_alike;
         int from = -1, to = -1;
-        for (int j = 0; j < now->n; j++) {
+        for (size_t j = 0; j < n_now; j++) {
             for (size_t k = 0; k < n && now->line[j] < 0; k++)
-                if (!taken[k] && alike[(size_t)j * n + k] > most)
-                    most = alike[(size_t)j * n + k], from = (int)k, to = j;
+                if (!taken[k] && alike[j * n + k] > most) most = alike[j * n + k], from = (int)k, to = (int)j;
         }
         if (from < 0) break;
         taken[from] = true;
         now->line[to] = before->line[from];
     }
-    for (int j = 0; j < now->n; j++)
+    for (size_t j = 0; j < n_now; j++)
         if (now->line[j] < 0) now->line[j] = s->n_line++;
 }
 
-static tracks take_tracks(bough_arena *arena, int count, int n_state) {
-    size_t n = (size_t)count;
-    return (tracks){.n_state = n_state,
-                    .line = bough_arena_take(arena, n * sizeof(int)),
-                    .weight = bough_arena_doubles(arena, (size_t)n_state),
-                    .shape = bough_arena_doubles(arena, 2 * n * (size_t)n_state)};
-}
-
-// The point's modes into the sweep, and its shapes to `now`.
-static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulation *sim,
-                      const bough_vibration *v, int point, const tracks *before, tracks *now, sweep *s) {
-    size_t n = (size_t)now->n_state;
-    now->n = v->found;
+// The modes of a point into the sweep.
+static void add_modes(bough_arena *keep, int point, const tracks *before, tracks *now, sweep *s) {
+    const bough_simulation *sim = now->simulation;
+    size_t n = (size_t)count_states(now);
+    now->weight = bough_arena_doubles(now->arena, n);
     bough_assembly_scales(sim->master->assembly, now->weight);
     for (size_t i = 0; i < n; i++) now->weight[i] = 1 / (now->weight[i] * now->weight[i]);
-    for (int k = 0; k < v->found; k++) {
-        double *shape = now->shape + (size_t)k * 2 * n;
-        memcpy(shape, v->pair[k].shape_real, n * sizeof *shape);
-        memcpy(shape + n, v->pair[k].shape_imag, n * sizeof *shape);
-    }
-    find_lines(arena, before, now, s);
-    for (int k = 0; k < v->found; k++) {
-        const bough_scene_mode *m = &v->mode[k];
+    find_lines(before, now, s);
+    for (int k = 0; k < now->modes.found; k++) {
+        const bough_scene_mode *m = &now->modes.mode[k];
         sweep_mode *to = &s->mode[s->n_mode++];
         *to = (sweep_mode){.point = point,
                            .line = now->line[k],
@@ -207,7 +194,8 @@ static void add_modes(bough_arena *keep, bough_arena *arena, const bough_simulat
 
 // -- points ---------------------------------------------------------------------------------------
 
-// At a point; with `ratio` (NULL: without) those of the other mesh, and the error over the difference of both.
+// At a point; with `ratio` (NULL: without) those of the other mesh, and the error over the difference of
+// both.
 static bough_status find_modes(bough_arena *arena, const bough_options *options, int point, const sweep *s,
                                double *ratio, bough_simulation **sim, bough_vibration *v) {
     bough_options at = options_at(arena, options, s, point);
@@ -223,20 +211,17 @@ static bough_status find_modes(bough_arena *arena, const bough_options *options,
     return bough_vibration_find(arena, *sim, (*sim)->scene->modes.count, v);
 }
 
-static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough_simulation *sim,
-                              const bough_vibration *v, int point, tracks *track, sweep *s) {
-    int n_state = sim->master->assembly->n_state, count = sim->scene->modes.count;
-    tracks *before = &track[point % 2], *now = &track[(point + 1) % 2];
+static bough_status add_point(bough_arena *keep, int point, const tracks *before, tracks *now, sweep *s) {
+    const bough_simulation *sim = now->simulation;
+    int most = sim->scene->modes.count * s->n_point;
     if (point == 0) {
-        s->mode = bough_arena_take(keep, (size_t)(count * s->n_point) * sizeof *s->mode);
-        *before = take_tracks(keep, count, n_state);
-        *now = take_tracks(keep, count, n_state);
-    } else if (n_state != before->n_state || v->found > s->n_point * count - s->n_mode) {
+        s->mode = bough_arena_take(keep, (size_t)most * sizeof *s->mode);
+    } else if (count_states(now) != count_states(before) || now->modes.found > most - s->n_mode) {
         return bough_fail(BOUGH_INVALID,
                           "--sweep cannot change the bodies, their mesh or the number of modes");
     }
-    add_modes(keep, arena, sim, v, point, before, now, s);
-    s->speed[point] = fabs(v->spin) / BOUGH_RPM;
+    add_modes(keep, point, before, now, s);
+    s->speed[point] = fabs(now->modes.spin) / BOUGH_RPM;
     s->n_blade = sim->scene->turbine.n_blade;
     s->free = bough_modes_rotor_is_free(sim);
     char *end;
@@ -245,17 +230,17 @@ static bough_status add_point(bough_arena *keep, bough_arena *arena, const bough
     return bough_ok();
 }
 
-static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *track,
+// `last`: the point before, which this one replaces.
+static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *last,
                                 sweep *s) {
-    bough_arena *arena = bough_arena_child(keep);
-    bough_simulation *sim;
-    bough_vibration v;
-    bough_status status = find_modes(arena, options, point, s, NULL, &sim, &v);
-    if (bough_is_ok(&status))
-        status = add_point(keep, arena, sim, &v, point, track, s);
-    else if (status.message[0])
-        status = bough_fail(status.code, "%s=%s: %s", s->key[0], s->value[point], status.message);
-    bough_arena_destroy(arena);
+    tracks now = {.arena = bough_arena_child(keep)};
+    bough_status status = find_modes(now.arena, options, point, s, NULL, &now.simulation, &now.modes);
+    if (!bough_is_ok(&status) && status.message[0])
+        return bough_fail(status.code, "%s=%s: %s", s->key[0], s->value[point], status.message);
+    BOUGH_TRY(status);
+    BOUGH_TRY(add_point(keep, point, last, &now, s));
+    bough_arena_destroy(last->arena);
+    *last = now;
     return status;
 }
 
@@ -538,14 +523,14 @@ static bough_status print_boundary(bough_arena *arena, const bough_options *opti
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options, const bough_texts *sweeps,
                                bool until_unstable) {
     sweep s = {0};
-    tracks track[2] = {{0}};
+    tracks last = {0};
     const char *folder = bough_out_folder(arena, options);
     BOUGH_TRY(read_points(arena, sweeps, &s));
     printf("%4s %12s %12s %11s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping",
            "decrement", "body", "shape");
     for (bool ends = false; s.n_solved < s.n_point && !ends; s.n_solved++) {
         int first = s.n_mode;
-        BOUGH_TRY(solve_point(arena, options, s.n_solved, track, &s));
+        BOUGH_TRY(solve_point(arena, options, s.n_solved, &last, &s));
         print_point(&s, s.n_solved, first);
         ends = until_unstable && grows(most_growing(&s, s.n_solved));
     }
