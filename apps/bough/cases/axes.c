@@ -1,4 +1,4 @@
-// Reads replacements of keys and the axes of a grid, and forms the combinations of a grid.
+// Reads replacements of keys and the axes of a grid, and finds the values of a case.
 #include "apps/bough/cases/study.h"
 
 // -- replacements ---------------------------------------------------------------------------------
@@ -120,29 +120,7 @@ void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void 
     for (int i = 0; i < node->n; i++) grid->axis[i].label = short_label(grid, i);
 }
 
-// -- combinations ---------------------------------------------------------------------------------
-
-int bough_grid_count(const bough_study_grid *grid) {
-    long n = 1;
-    for (int i = 0; i < grid->n && n <= BOUGH_MOST_CASES; i++) n *= grid->axis[i].value.n;
-    return n <= BOUGH_MOST_CASES ? (int)n : BOUGH_MOST_CASES + 1;
-}
-
-void bough_grid_place(const bough_study_grid *grid, int number, int *index) {
-    for (int i = grid->n - 1; i >= 0; i--) {
-        index[i] = number % grid->axis[i].value.n;
-        number /= grid->axis[i].value.n;
-    }
-}
-
-const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index) {
-    const char *text = "";
-    for (int i = 0; i < grid->n; i++) {
-        text = bough_arena_print(arena, "%s%s%s=%s", text, i ? ", " : "", grid->axis[i].label,
-                                 grid->axis[i].value.item[index[i]].value);
-    }
-    return text;
-}
+// -- values of a case -----------------------------------------------------------------------------
 
 const char *bough_grid_others(bough_arena *arena, const bough_study *study, const bough_case *c, int axis) {
     const char *text = "";

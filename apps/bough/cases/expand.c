@@ -62,6 +62,33 @@ double bough_case_weight(const bough_study *s, const bough_case *c, double count
     return hours * s->lifetime * c->fraction * 3600 / counted;
 }
 
+// -- combinations ---------------------------------------------------------------------------------
+
+// The number of combinations of a grid, at most BOUGH_MOST_CASES + 1.
+static int count(const bough_study_grid *grid) {
+    long n = 1;
+    for (int i = 0; i < grid->n && n <= BOUGH_MOST_CASES; i++) n *= grid->axis[i].value.n;
+    return n <= BOUGH_MOST_CASES ? (int)n : BOUGH_MOST_CASES + 1;
+}
+
+// The indices on the axes of combination `number`; the last axis varies fastest.
+static void place(const bough_study_grid *grid, int number, int *index) {
+    for (int i = grid->n - 1; i >= 0; i--) {
+        index[i] = number % grid->axis[i].value.n;
+        number /= grid->axis[i].value.n;
+    }
+}
+
+// These as text, "scheme=ramp, macro_step=5 ms".
+static const char *name_settings(bough_arena *arena, const bough_study_grid *grid, const int *index) {
+    const char *text = "";
+    for (int i = 0; i < grid->n; i++) {
+        text = bough_arena_print(arena, "%s%s%s=%s", text, i ? ", " : "", grid->axis[i].label,
+                                 grid->axis[i].value.item[index[i]].value);
+    }
+    return text;
+}
+
 // -- cases ----------------------------------------------------------------------------------------
 
 static void add_set(bough_case *c, const bough_study_setting *setting) {
@@ -99,7 +126,7 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
     const char *scene = g->scene_name ? g->scene_name : s->scene_name;
     int scenes = scene_axis(s, g);
     c->group = group;
-    bough_grid_place(&g->grid, number, c->index);
+    place(&g->grid, number, c->index);
     c->fraction = fraction_of(s, c, n_group);
     take_sets(arena, s, g->set.n + g->grid.n, c);
     add_sets(c, &g->set);
@@ -111,7 +138,7 @@ static void make_case(bough_arena *arena, bough_study *s, int group, int number,
             add_set(c, value);
     }
     c->scene = bough_study_path(arena, s->file, scene);
-    c->settings = bough_grid_settings(arena, &g->grid, c->index);
+    c->settings = name_settings(arena, &g->grid, c->index);
 }
 
 // -- references -----------------------------------------------------------------------------------
@@ -177,14 +204,14 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
     long n = 0;
     for (int g = 0; g < s->n_group && n <= BOUGH_MOST_CASES; g++) {
         check_group(s, &s->group[g], errors);
-        n += bough_grid_count(&s->group[g].grid);
+        n += count(&s->group[g].grid);
     }
     if (n > BOUGH_MOST_CASES)
         bough_errors_add(errors, s->node, "", "expected at most %d cases", BOUGH_MOST_CASES);
     if (errors->n > 0) return;
     s->cases = bough_arena_take(arena, (size_t)n * sizeof *s->cases);
     for (int g = 0; g < s->n_group; g++) {
-        int n_group = bough_grid_count(&s->group[g].grid);
+        int n_group = count(&s->group[g].grid);
         for (int i = 0; i < n_group; i++) {
             bough_case *c = &s->cases[s->n_case++];
             make_case(arena, s, g, i, n_group, c);

@@ -198,12 +198,6 @@ bough_study *bough_study_parse(bough_arena *arena, const char *path, const bough
 void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);
 
-// The number of combinations of a grid, at most BOUGH_MOST_CASES + 1; the indices on the axes of combination
-// `number`, the last axis varies fastest; and these as text, "scheme=ramp, macro_step=5 ms".
-int bough_grid_count(const bough_study_grid *grid);
-void bough_grid_place(const bough_study_grid *grid, int number, int *index);
-const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index);
-
 // Makes the cases of all groups, and the references.
 void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);
 
