@@ -170,9 +170,9 @@ static bough_status run_group(bough_arena *arena, work *w, int group) {
     return status;
 }
 
-// A reference is run as long as one of its cells is missing. Groups of kind stability run in parallel, each
-// run on one thread, and cells of a failed reference have no errors; otherwise a failed reference ends the
-// study.
+// A reference is run also as long as one of its cells is missing. Groups of kind stability run in parallel,
+// each run on one thread, and cells of a failed reference have no errors; otherwise a failed reference ends
+// the study.
 static bough_status run_groups(bough_arena *arena, work *w) {
     bough_study_results *x = &w->results;
     const bough_study *s = x->study;
@@ -183,7 +183,7 @@ static bough_status run_groups(bough_arena *arena, work *w) {
     BOUGH_TRY(read_results(x));
     for (int g = 0; g < s->n_reference; g++) {
         int missing = bough_study_missing(x, g);
-        bool needed = missing > 0 || (!s->is.parallel && !x->reference[g].done);
+        bool needed = missing > 0 || !x->reference[g].done;
         if (!needed || !is_mine(x->options, g)) continue;
         w->piece[w->n++] = g;
         w->to_do += missing;

@@ -57,15 +57,9 @@ void bough_study_compare(const bough_study *study, const bough_study_series *ser
     }
 }
 
-// "ok", "failed at t=12.3 s", "not run"
+// "ok", "failed at t=12.3 s"
 static void case_status(const bough_case_result *result, char text[40]) {
-    if (!result->done) {
-        snprintf(text, 40, "not run");
-    } else if (bough_is_ok(&result->outcome)) {
-        snprintf(text, 40, "ok");
-    } else {
-        snprintf(text, 40, "failed at t=%.4g s", result->time);
-    }
+    snprintf(text, 40, bough_is_ok(&result->outcome) ? "ok" : "failed at t=%.4g s", result->time);
 }
 
 // Rows of the table before the cells.
@@ -100,31 +94,32 @@ static void put_either(line *l, const char *csv, const char *text) {
     put(l, "%.*s", l->csv ? (int)sizeof *l->field : 40, l->csv ? csv : text);
 }
 
-// A number or its headings; `text` NULL: only in the CSV.
-static void put_number(line *l, const char *csv, const char *text, bool known, double value) {
+// A number, NaN if it is unknown, or its headings; `text` NULL: only in the CSV.
+static void put_number(line *l, const char *csv, const char *text, double value) {
     if (!l->csv && !text) return;
     if (l->head)
         put(l, "%s", l->csv ? csv : text);
-    else if (known && isfinite(value))
+    else if (isfinite(value))
         put(l, l->csv ? "%.9g" : "%.3g", value);
     else
         put_either(l, "", "-");
 }
 
-static void put_measure(line *l, const bough_study_measure *m, bool known, double error, double estimate) {
+static void put_measure(line *l, const bough_study_measure *m, double error, double estimate) {
     char heading[200], estimated[200];
     snprintf(heading, sizeof heading, "%.120s [%.60s]", m->name, m->unit);
     snprintf(estimated, sizeof estimated, "%.120s estimated [%.50s]", m->name, m->unit);
-    put_number(l, heading, heading, known, error);
-    put_number(l, estimated, "estimated", known, estimate);
+    put_number(l, heading, heading, error);
+    put_number(l, estimated, "estimated", estimate);
 }
 
 static void put_row(line *l, const bough_study_results *results, int row) {
     const bough_study *s = results->study;
     const bough_case_result *r = result_of(results, row);
     const bough_coupling_report *k = &r->coupling;
+    const double none = (double)NAN;
     char number[12], status[40];
-    bool failed = r->done && !bough_held(r), exchanges = l->csv || k->energy_exchanged > 0;
+    bool failed = !bough_is_ok(&r->outcome), known = l->csv || !failed;
     l->n = 0;
     l->head = row == HEAD;
     case_status(r, status);
@@ -136,17 +131,20 @@ static void put_row(line *l, const bough_study_results *results, int row) {
         put_either(l, l->head ? axis->key : value, l->head ? axis->label : value[0] ? value : "as the scene");
     }
     put_either(l, l->head ? "status" : failed ? "failed" : status, l->head ? "status" : status);
-    put_number(l, "time [s]", NULL, r->done, r->time);
-    put_number(l, "wall [s]", "wall [s]", r->done, r->wall);
-    put_number(l, "cpu [s]", "cpu [s]", r->done, r->cpu);
-    put_number(l, "real_time_factor [1]", "x real time", r->done, r->time / r->wall);
+    put_number(l, "time [s]", NULL, r->time);
+    put_number(l, "wall [s]", "wall [s]", r->wall);
+    put_number(l, "cpu [s]", "cpu [s]", r->cpu);
+    put_number(l, "real_time_factor [1]", "x real time", r->time / r->wall);
     for (int i = 0; i < s->n_measure; i++)
-        put_measure(l, &s->measure[i], r->done && (l->csv || !failed), r->error[i], r->estimate[i]);
-    put_number(l, "defect_max [1]", NULL, r->done, k->defect_max);
-    put_number(l, "defect_rms [1]", "defect rms [1]", r->done, k->defect_rms);
-    put_number(l, "energy_residual [J]", "energy defect [1]", r->done && exchanges,
-               k->energy_residual / (l->csv ? 1 : k->energy_exchanged));
-    put_number(l, "energy_exchanged [J]", NULL, r->done, k->energy_exchanged);
+        put_measure(l, &s->measure[i], known ? r->error[i] : none, known ? r->estimate[i] : none);
+    put_number(l, "defect_max [1]", NULL, k->defect_max);
+    put_number(l, "defect_rms [1]", "defect rms [1]", k->defect_rms);
+    if (l->csv)
+        put_number(l, "energy_residual [J]", NULL, k->energy_residual);
+    else
+        put_number(l, NULL, "energy defect [1]",
+                   k->energy_exchanged > 0 ? k->energy_residual / k->energy_exchanged : none);
+    put_number(l, "energy_exchanged [J]", NULL, k->energy_exchanged);
     if (l->csv) put(l, "%s", l->head ? "diagnosis" : failed ? r->outcome.message : "");
 }
 
@@ -171,7 +169,7 @@ static void print_line(const line *l, const int width[COLUMNS], int n_left, FILE
 }
 
 static void print_diagnosis(const char *settings, const bough_case_result *r, FILE *stream) {
-    if (!r->done || bough_is_ok(&r->outcome)) return;
+    if (bough_is_ok(&r->outcome)) return;
     const char *text = r->outcome.message;
     size_t length = strlen(text);
     bool cut = length > SHORT;
