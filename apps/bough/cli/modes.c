@@ -158,7 +158,6 @@ const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *
     return mode->blades ? "blades" : s->scene->body[mode->body].name;
 }
 
-// Whether nothing but inertia holds the rotor's joint.
 bool bough_modes_rotor_is_free(const bough_simulation *s) {
     if (s->scene->turbine.node == NULL) return false;
     const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;

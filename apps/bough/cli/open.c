@@ -101,13 +101,12 @@ bough_status bough_open_channels(const bough_scene *scene, const bough_channels 
 const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
     if (options->out) return options->out;
     const char *name = bough_file_name(options->operand);
-    const char *dot = strrchr(name, '.');
-    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
     if (name > options->operand + 1 && strcmp(name, "scene.yaml") == 0) { // named after its directory
-        const char *end = name - 1;
-        for (name = end; name > options->operand && name[-1] != '/'; name--) {
-        }
-        length = (size_t)(end - name);
+        int length = (int)(name - 1 - options->operand);
+        name = bough_file_name(bough_arena_print(arena, "%.*s", length, options->operand));
+        return bough_arena_print(arena, "out/%s", name);
     }
-    return bough_arena_print(arena, "out/%.*s", (int)length, name);
+    const char *dot = strrchr(name, '.');
+    int length = (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name));
+    return bough_arena_print(arena, "out/%.*s", length, name);
 }

@@ -174,10 +174,6 @@ static void look(drawing *d) {
 // The picture's height [px].
 static double fit(drawing *d) {
     double size[2];
-    for (int k = 0; k < 2; k++) {
-        d->low[k] = HUGE_VAL;
-        d->high[k] = -HUGE_VAL;
-    }
     for (int k = 0, at = 0; k < d->frame->n_line; at = d->frame->end[k++]) {
         for (int i = at; i < d->frame->end[k]; i++) include(d, point(d, i));
         if (d->frame->end[k] - at > RIGID) include(d, straight_end(d, at, d->frame->end[k]));
@@ -270,7 +266,8 @@ static void draw_legend(const drawing *d, double height) {
 }
 
 static void draw(const void *frame, FILE *svg) {
-    drawing *d = &(drawing){.frame = frame, .svg = svg};
+    drawing *d =
+        &(drawing){.frame = frame, .low = {HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL}, .svg = svg};
     look(d);
     double height = fit(d);
     bough_picture_begin(svg, WIDTH, (int)lround(height));
