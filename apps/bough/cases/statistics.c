@@ -277,21 +277,15 @@ static void quote(FILE *f, const char *text) {
     fputc('\'', f);
 }
 
-// The command that runs the case alone.
-static void put_command(FILE *f, const bough_case *c) {
-    fputs("bough run ", f);
+void bough_case_failed(const bough_study *s, int number, const char *message, FILE *f) {
+    const bough_case *c = &s->cases[number];
+    fprintf(f, "case %d failed (%s%s%s): %s\n    bough run ", number + 1, s->group[c->group].name,
+            c->settings[0] ? ", " : "", c->settings, message);
     quote(f, c->scene);
     for (int i = 0; i < c->n_set; i++) {
         fputs(" --set ", f);
         quote(f, c->set[i]);
     }
-}
-
-void bough_case_failed(const bough_study *s, int number, const char *message, FILE *f) {
-    const bough_case *c = &s->cases[number];
-    fprintf(f, "case %d failed (%s%s%s): %s\n    ", number + 1, s->group[c->group].name,
-            c->settings[0] ? ", " : "", c->settings, message);
-    put_command(f, c);
     fputc('\n', f);
 }
 
