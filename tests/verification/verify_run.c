@@ -52,7 +52,7 @@ static bough_status do_static(bough_arena *arena, const bough_verify_case *x, bo
     bough_steady found;
     double time = bough_equilibrium_time(s);
     if (first_rod(s) && bough_vibration_wanted(s)) {
-        BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, time, 0, NULL));
+        BOUGH_TRY(bough_simulation_equilibrium(s, time, 0, NULL));
     } else {
         BOUGH_TRY(steady(arena, s, &found));
         bough_member_set(&s->rod[found.beam->port], 0, found.state);

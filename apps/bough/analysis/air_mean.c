@@ -18,7 +18,7 @@ const int *bough_air_tangent_rows(bough_arena *arena, const bough_simulation *s,
     int n = group->n_row, all = n + n_per_blade;
     int *row = bough_arena_take(arena, (size_t)(group->n * all + 1) * sizeof *row);
     for (int k = 0; k < group->n; k++) {
-        int air = s->master->assembly->n_state + bough_air_tangent_blade(s, group, k) * n_per_blade;
+        int air = s->assembly->n_state + bough_air_tangent_blade(s, group, k) * n_per_blade;
         for (int j = 0; j < all; j++) row[k * all + j] = j < n ? group->row[k * n + j] : air + j - n;
     }
     return row;

@@ -26,7 +26,7 @@ typedef struct work {
 } work;
 
 static void take(bough_arena *arena, work *w) {
-    size_t n = (size_t)w->whole->assembly->n_state, m = (size_t)w->n_memory + 1;
+    size_t n = (size_t)w->simulation->assembly->n_state, m = (size_t)w->n_memory + 1;
     w->row = bough_arena_take(arena, m * sizeof *w->row);
     bough_arena_each(arena, m, &w->memory, &w->before, &w->after, &w->air_rate[0], &w->air_rate[1]);
     bough_arena_each(arena, n, &w->state, &w->motion, &w->rate[0], &w->rate[1]);
@@ -36,7 +36,7 @@ static void take(bough_arena *arena, work *w) {
 // Advances the air's states by `step` from `from`, which is changed, to `to`, where the bodies have been set
 // to `state`; `loads`: also sets the loads on them.
 static void advance_air(work *w, const double *state, bool loads, double step, double *from, double *to) {
-    size_t size = (size_t)w->whole->assembly->n_state * sizeof *state;
+    size_t size = (size_t)w->simulation->assembly->n_state * sizeof *state;
     bool moved = memcmp(w->motion, state, size) != 0;
     memcpy(w->motion, state, size);
     from[0] = w->time - step;
@@ -49,7 +49,7 @@ static void advance_air(work *w, const double *state, bool loads, double step, d
 // w->before. The first of two short steps makes the air's inputs those of this state.
 static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->whole->assembly, w->time, w->state);
+    bough_equilibrium_set_state(s, w->time, w->state);
     if (w->dynamic) {
         advance_air(w, w->state, false, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
@@ -66,7 +66,7 @@ static bough_status find_rates(work *w, const double *state, double *rate, doubl
 // Sets the air to equilibrium about `state` and stores its memory in w->memory.
 static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
-    bough_equilibrium_set_state(s, w->whole->assembly, w->time, state);
+    bough_equilibrium_set_state(s, w->time, state);
     bough_aero_link_hold(s->aero, w->time);
     if (!w->dynamic) return;
     bough_aero_link_continue(s->aero, w->time, false);
@@ -79,14 +79,14 @@ static void settle(work *w, const double *state) {
 
 // Slopes of the rates of members and air, by the difference of both sides in the work.
 static void set_column(const work *w, double between, double *column) {
-    int n = w->whole->assembly->n_state;
+    int n = w->simulation->assembly->n_state;
     for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / between;
     for (int k = 0; k < w->n_air; k++) column[n + k] = (w->air_rate[1][k] - w->air_rate[0][k]) / between;
 }
 
 // Sets the state and the air at rest about it, before a change.
 static void begin_change(work *w, const double *state) {
-    memcpy(w->state, state, (size_t)w->whole->assembly->n_state * sizeof *state);
+    memcpy(w->state, state, (size_t)w->simulation->assembly->n_state * sizeof *state);
     memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
 }
 
@@ -107,7 +107,7 @@ static void put_column(const work *w, int at, bough_air_tangent *t) {
 }
 
 static void change(work *w, int at, double size) {
-    int n = w->whole->assembly->n_state;
+    int n = w->simulation->assembly->n_state;
     if (at < n)
         w->state[at] += size;
     else
@@ -126,7 +126,7 @@ static bough_status follow_state(work *w, const double *state, int at, double si
 // One-sided differences: there are thousands of states, and the curvature of the loads within a difference is
 // 1e-5 of their slope.
 static bough_status follow_member(work *w, const double *state, int member, bough_air_tangent *t) {
-    const bough_assembly *a = w->whole->assembly;
+    const bough_assembly *a = w->simulation->assembly;
     const bough_system *system = &a->member[member]->system;
     for (int k = 0; k < system->n_state; k++)
         BOUGH_TRY(follow_state(w, state, a->state_offset[member] + k, difference * system->scale[k], t));
@@ -195,7 +195,7 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     int n_air = w->n_air / s->scene->turbine.n_blade, n_row = group->n_row;
     blades b = {.w = w, .group = group, .n_row = n_row, .n_air = n_air, .n_all = n_row + n_air};
     size_t all = (size_t)b.n_all + 1, parts = (size_t)group->n;
-    int n = w->whole->assembly->n_state;
+    int n = w->simulation->assembly->n_state;
     double *scale = b.other = bough_arena_doubles(arena, (size_t)n);
     b.blade = bough_arena_doubles(arena, (size_t)n);
     bough_arena_each(arena, all, &b.place, &b.reach, &b.size, &b.own);
@@ -208,7 +208,7 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     b.n_load = (size_t)bough_aero_link_loads_size(s->aero, b.number[0]);
     bough_arena_each(arena, parts * b.n_load, &b.load[0], &b.load[1]);
     keep_loads(&b, 0);
-    bough_assembly_scales(w->whole->assembly, scale);
+    bough_assembly_scales(w->simulation->assembly, scale);
     for (int j = 0; j < b.n_all; j++)
         b.size[j] = is_of_air(&b, j) ? air_difference : difference * scale[group->row[j]];
     for (int k = 0; k < group->n; k++)
@@ -254,7 +254,7 @@ static const double carried = 1e-8;
 static bool moves_blades_only(const blades *b) {
     double blade = 0, other = 0;
 #pragma omp simd reduction(max : blade, other)
-    for (int i = 0; i < b->w->whole->assembly->n_state; i++) {
+    for (int i = 0; i < b->w->simulation->assembly->n_state; i++) {
         double size = fabs(b->changed[i]), of_blade = b->blade[i] * size, of_other = b->other[i] * size;
         blade = of_blade > blade ? of_blade : blade;
         other = of_other > other ? of_other : other;
@@ -380,7 +380,7 @@ static bool is_of_group(const bough_assembly *a, const bough_blade_group *group,
 // All columns except those of a group and its air; `found` NULL: all.
 static bough_status follow_others(work *w, const double *state, const bough_blade_group *found,
                                   bough_air_tangent *t) {
-    const bough_assembly *a = w->whole->assembly;
+    const bough_assembly *a = w->simulation->assembly;
     for (int i = 0; i < a->n_member; i++) {
         if (!meets_air(w->simulation, i) || (found && is_of_group(a, found, i))) continue;
         BOUGH_TRY(follow_member(w, state, i, t));
@@ -416,7 +416,7 @@ static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, d
 }
 
 static bough_air_tangent take_tangent(bough_arena *arena, const work *w, int inputs) {
-    int n = w->whole->assembly->n_state, all = n + w->n_air;
+    int n = w->simulation->assembly->n_state, all = n + w->n_air;
     return (bough_air_tangent){.n = n,
                                .n_air = w->n_air,
                                .all = all,
@@ -485,7 +485,7 @@ bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *
 // The rates with `factor` times a change.
 static bough_status change_by(bough_air_change *x, double factor, const double *change, int side) {
     work *w = &x->w;
-    int n = w->whole->assembly->n_state;
+    int n = w->simulation->assembly->n_state;
     for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];
     memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
     for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];

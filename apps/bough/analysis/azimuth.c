@@ -69,17 +69,16 @@ static bough_scene *turned_scene(bough_arena *arena, const bough_simulation *s, 
 // sees there, which is near the equilibrium.
 static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double *state) {
     const bough_simulation *s = a->at[0].simulation;
-    const bough_assembly *assembly = s->master->assembly;
     int azimuth, speed;
-    bough_assembly_states(assembly, state);
+    bough_assembly_states(s->assembly, state);
     blend(x->blend, false, (blade_rows){a->group->n, a->group->n_row, a->group->row}, state);
     for (int k = 0; k < a->group->n; k++) { // quaternions of length 1
-        const bough_system *system = &assembly->member[a->group->blade[k]->port + 1]->system;
+        const bough_system *system = &s->rod[a->group->blade[k]->port].system;
         if (system->ops->constrain) system->ops->constrain(system->self, time, state + a->group->first[k]);
     }
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
     state[azimuth] += x->turn;
-    bough_equilibrium_set_state(x->simulation, x->simulation->master->assembly, time, state);
+    bough_equilibrium_set_state(x->simulation, time, state);
 }
 
 static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bool balanced,
@@ -87,11 +86,9 @@ static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double 
     const bough_simulation *s = a->at[0].simulation;
     BOUGH_TRY(
         bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, NULL, &x->simulation));
-    const bough_assembly *assembly = x->simulation->master->assembly;
-    begin(a, x, time, bough_arena_doubles(arena, (size_t)assembly->n_state));
+    begin(a, x, time, bough_arena_doubles(arena, (size_t)s->assembly->n_state));
     if (balanced) {
-        bough_status status =
-            bough_simulation_equilibrium(x->simulation, assembly, time, BOUGH_EQUILIBRIUM_NEAR, NULL);
+        bough_status status = bough_simulation_equilibrium(x->simulation, time, BOUGH_EQUILIBRIUM_NEAR, NULL);
         if (!bough_is_ok(&status))
             return bough_fail(status.code, "with the rotor turned further by %.3g degrees: %.380s",
                               x->turn / BOUGH_DEGREE, status.message);
@@ -125,7 +122,7 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
             BOUGH_TRY(turn_on(arena, a, time, balanced, x));
     }
     a->at[0].point.state =
-        bough_arena_copy(arena, point->state, (size_t)s->master->assembly->n_state * sizeof(double));
+        bough_arena_copy(arena, point->state, (size_t)s->assembly->n_state * sizeof(double));
     if (a->n > 1) set_mean(a, point->state);
     return bough_ok();
 }
@@ -171,7 +168,7 @@ bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bo
     const bough_simulation *s = x->simulation;
     const bough_vibration_point *point = &x->point;
     bough_azimuth_product *p = bough_arena_take(arena, sizeof *p);
-    *p = (bough_azimuth_product){.blend = x->blend, .n = point->whole->assembly->n_state, .angle = -1};
+    *p = (bough_azimuth_product){.blend = x->blend, .n = s->assembly->n_state, .angle = -1};
     p->air = bough_air_change_create(arena, x->simulation, point->whole, point->def.time, point->state,
                                      dynamic, &p->n_air);
     int n_per_blade = p->n_air / s->scene->turbine.n_blade;
@@ -219,12 +216,11 @@ static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors 
 
 static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, int k, bool dynamic, int n,
                                    const bough_mode_vectors *vector, double complex *value) {
-    const bough_assembly *assembly = a->at[k].point.whole->assembly;
     int n_air;
     bough_azimuth_product *p = bough_azimuth_product_create(arena, a, k, dynamic, &n_air);
     double *scale, *image;
     bough_arena_each(arena, (size_t)(p->n + n_air), &scale, &image);
-    bough_assembly_scales(assembly, scale);
+    bough_assembly_scales(a->at[k].simulation->assembly, scale);
     for (int i = 0; i < n_air; i++) scale[p->n + i] = 1;
     for (int i = 0; i < n; i++) {
         value[i] = (double)NAN;

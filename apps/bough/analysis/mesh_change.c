@@ -51,7 +51,7 @@ static void carry_rod(const bough_rod_model *from, const bough_rod_model *to, bo
 
 static void carry(const work *w, bool left, const double *x, double *y) {
     const bough_simulation *s = w->known->simulation, *other = w->system->simulation;
-    const bough_assembly *a = s->master->assembly, *b = other->master->assembly;
+    const bough_assembly *a = s->assembly, *b = other->assembly;
     for (int i = 0; i < a->n_member; i++) {
         if (b->member[i]->system.n_state == a->member[i]->system.n_state)
             memcpy(y + b->state_offset[i], x + a->state_offset[i],
@@ -68,7 +68,7 @@ static void carry(const work *w, bool left, const double *x, double *y) {
 static side take_side(bough_arena *arena, const work *w, bool left) {
     side x;
     size_t n = (size_t)w->n, m = (size_t)w->m, q = (size_t)w->q + 1;
-    size_t length = (size_t)w->known->simulation->master->assembly->n_state;
+    size_t length = (size_t)w->known->simulation->assembly->n_state;
     x.known = bough_arena_doubles(arena, n * q);
     bough_arena_each(arena, 2 * n * q, &x.members, &x.rate);
     x.air = bough_arena_doubles(arena, 2 * m * q + 1);

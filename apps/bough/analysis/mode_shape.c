@@ -14,7 +14,6 @@ typedef struct beam_shape {
 
 typedef struct mode_shape {
     const bough_simulation *simulation;
-    const bough_assembly *assembly;
     const bough_blade_group *group;
     const double *state; // (n_state) that the modes are about
     const bough_eigen_pair *pair;
@@ -33,7 +32,7 @@ static const beam_shape *beam_of(const mode_shape *x, const bough_beam *beam) {
 
 static void take(bough_arena *arena, mode_shape *x) {
     const bough_simulation *s = x->simulation;
-    x->moved = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
+    x->moved = bough_arena_doubles(arena, (size_t)x->simulation->assembly->n_state + 1);
     x->beam = bough_arena_take(arena, ((size_t)s->n_beam + 1) * sizeof *x->beam);
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].modal == NULL) continue;
@@ -48,7 +47,7 @@ static void take(bough_arena *arena, mode_shape *x) {
 static void expand(const mode_shape *x, const bough_beam *beam, int part, double step, double *to) {
     const bough_simulation *s = x->simulation;
     const bough_frame *frame = &s->tree->markers[beam->marker];
-    int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
+    int at = x->simulation->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     double input[BOUGH_ROD_INPUTS] = {0}, change[6] = {0}; // gravity does not matter
     bough_twist_store(twist, input);
@@ -67,7 +66,8 @@ static void set_modal(const mode_shape *x, const bough_beam *beam, beam_shape *b
     size_t n = (size_t)BOUGH_ROD_STATES * beam->mesh->n;
     for (int part = 0; part < 2; part++) {
         double most = DBL_MIN, *to = b->memory + (size_t)(1 + part) * n;
-        for (int k = 0; k < x->assembly->n_state; k++) most = fmax(most, fabs(part_of(x, part)[k]));
+        for (int k = 0; k < x->simulation->assembly->n_state; k++)
+            most = fmax(most, fabs(part_of(x, part)[k]));
         double step = 1e-6 / most;
         bough_tree_tangent(x->simulation->tree, x->state, part_of(x, part), x->simulation->view);
         expand(x, beam, part, -step, b->memory);
@@ -85,7 +85,7 @@ static void set_beams(const mode_shape *x) {
         const bough_beam *beam = &x->simulation->beam[k];
         beam_shape *b = &x->beam[k];
         if (beam->port < 0) continue;
-        int at = x->assembly->state_offset[beam->port + 1];
+        int at = x->simulation->assembly->state_offset[beam->port + 1];
         if (beam->modal != NULL) {
             set_modal(x, beam, b);
             continue;
@@ -382,8 +382,7 @@ static void set_pattern(const mode_shape *x, bough_scene_mode *mode) {
 
 void bough_vibration_describe(bough_arena *arena, const bough_simulation *s,
                               const bough_vibration_point *point, bough_vibration *v) {
-    mode_shape x = {
-        .simulation = s, .assembly = s->master->assembly, .group = &point->group, .state = point->state};
+    mode_shape x = {.simulation = s, .group = &point->group, .state = point->state};
     v->n_row = count_rows(s);
     take(arena, &x);
     for (int k = 0; k < v->found; k++) {

@@ -31,7 +31,7 @@ typedef struct linear {
 } linear;
 
 static bough_status prepare(bough_arena *arena, bough_simulation *s, double time, linear *x) {
-    *x = (linear){.simulation = s, .n = s->master->assembly->n_state};
+    *x = (linear){.simulation = s, .n = s->assembly->n_state};
     BOUGH_TRY(bough_vibration_point_find(arena, s, time, &x->point));
     const bough_modes_def *def = &x->point.def;
     if (def->n_axes > 0)
@@ -54,7 +54,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
     size_t all = (size_t)(x->n + x->m) + 1;
     bough_arena_each(arena, all, &x->moved, &x->side[0], &x->side[1], &x->turned, &x->follows);
     x->scale = bough_arena_doubles(arena, all);
-    bough_assembly_scales(s->master->assembly, x->scale);
+    bough_assembly_scales(s->assembly, x->scale);
     x->rate = bough_modes_rate(arena, def);
     return bough_ok();
 }
@@ -260,7 +260,7 @@ static bough_status quotient(bough_arena *arena, bough_scene *scene, double time
     linear x;
     BOUGH_TRY(bough_simulation_build(arena, scene, &s));
     if (scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM)
-        BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, time, 0, NULL));
+        BOUGH_TRY(bough_simulation_equilibrium(s, time, 0, NULL));
     BOUGH_TRY(prepare(arena, s, time, &x));
     double *part, *image;
     bough_arena_each(arena, (size_t)of->all, &part, &image);

@@ -134,7 +134,7 @@ static void name_air(const bough_simulation *s, int n_air, bough_signal_name *st
 }
 
 static void name_states(const work *w, bough_state_space *to) {
-    const bough_assembly *a = w->whole->assembly;
+    const bough_assembly *a = w->s->assembly;
     const bough_tree *tree = w->s->tree;
     for (int i = 0; i < tree->n_links; i++) name_joint(tree, &tree->links[i], to->state);
     for (int i = 1; i < a->n_member; i++) {
@@ -164,9 +164,9 @@ static void name_outputs(const work *w, bough_state_space *to) {
 // Rates and channels at a state, under the air's forces that the bodies have.
 static bough_status evaluate(work *w, const double *state, int side) {
     bough_simulation *s = w->s;
-    bough_equilibrium_set_state(s, w->whole->assembly, w->time, state);
+    bough_equilibrium_set_state(s, w->time, state);
     BOUGH_TRY(bough_whole_rate(w->whole, w->time, state, w->rate[side]));
-    memcpy(s->master->coupling->input, w->whole->input, (size_t)w->whole->assembly->n_input * sizeof(double));
+    memcpy(s->master->coupling->input, w->whole->input, (size_t)w->s->assembly->n_input * sizeof(double));
     bough_channels_sample(&w->channels, w->time, w->value[side]);
     return bough_ok();
 }
@@ -174,7 +174,7 @@ static bough_status evaluate(work *w, const double *state, int side) {
 // Columns of state k, or of input k, by differences of order 4: a transverse change of slender rods stretches
 // segments, with a force that grows with its third power. The jump of a periodic angle is removed.
 static bough_status differentiate(work *w, bool by_input, int k, double size, bough_state_space *to) {
-    const bough_assembly *a = w->whole->assembly;
+    const bough_assembly *a = w->s->assembly;
     double *rate = (by_input ? to->b : to->a) + (size_t)k * (size_t)to->n;
     double *value = (by_input ? to->d : to->c) + (size_t)k * (size_t)to->n_output;
     for (int times = 1; times <= 2; times++) {
@@ -187,7 +187,7 @@ static bough_status differentiate(work *w, bool by_input, int k, double size, bo
             else
                 w->state[k] += change;
             bough_status status = evaluate(w, w->state, side);
-            if (by_input) bough_equilibrium_set_state(w->s, a, w->time, w->about);
+            if (by_input) bough_equilibrium_set_state(w->s, w->time, w->about);
             if (by_input) set_input(w, k, 0, w->state);
             if (!bough_is_ok(&status)) return status;
         }
@@ -211,7 +211,7 @@ static void add_air(const work *w, const bough_air_tangent *t, bough_state_space
 
 static bough_status prepare(bough_arena *arena, work *w) {
     bough_simulation *s = w->s;
-    const bough_assembly *a = s->master->assembly;
+    const bough_assembly *a = s->assembly;
     size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
     w->channels = bough_channels_start(arena);
     BOUGH_TRY(bough_simulation_channels(s, &w->channels));
@@ -227,7 +227,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
 }
 
 static void take(bough_arena *arena, int n_air, const work *w, bough_state_space *to) {
-    to->n = w->whole->assembly->n_state + n_air;
+    to->n = w->s->assembly->n_state + n_air;
     to->n_input = w->n_input;
     to->n_output = w->s->n_motion_channel;
     size_t n = (size_t)to->n, u = (size_t)to->n_input, o = (size_t)to->n_output;
@@ -254,8 +254,8 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
         BOUGH_TRY(bough_air_tangent_add(arena, &about, dynamic, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
-    bough_assembly_scales(w.whole->assembly, w.scale);
-    for (int k = 0; k < w.whole->assembly->n_state; k++)
+    bough_assembly_scales(s->assembly, w.scale);
+    for (int k = 0; k < s->assembly->n_state; k++)
         BOUGH_TRY(differentiate(&w, false, k, difference * w.scale[k], space));
     for (int k = 0; k < w.n_input; k++) BOUGH_TRY(differentiate(&w, true, k, w.size[k], space));
     BOUGH_TRY(evaluate(&w, w.about, 0));

@@ -64,14 +64,14 @@ static const double constant = 1e-5, even = 1e-3;
 static const double farther = 3;
 
 static bough_status prepare(bough_arena *arena, bough_simulation *s, bough_vibration_point *x) {
-    const bough_assembly *a = s->master->assembly;
+    const bough_assembly *a = s->assembly;
     bough_arena_each(arena, (size_t)a->n_state + 1, &x->state, &x->mean);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     bough_assembly_states(a, x->state);
     x->whole = bough_whole_create(arena, a, NULL);
     x->n_held = bough_equilibrium_held(s->tree, false, x->held);
     bough_whole_hold(arena, x->whole, x->n_held, x->held);
-    return bough_blade_group_find(arena, s, a, &x->group);
+    return bough_blade_group_find(arena, s, &x->group);
 }
 
 // Converts the coordinates of the tree in a change of the state to or from speeds, which rotate with the
@@ -111,7 +111,7 @@ static void define_axes(bough_arena *arena, const bough_simulation *s, bough_vib
     const bough_tree *tree = s->tree;
     double fastest = fastest_joint(s), largest = 0;
     if (fastest < at_rest) return;
-    size_t n = (size_t)tree->n_q, size = (size_t)s->master->assembly->n_state;
+    size_t n = (size_t)tree->n_q, size = (size_t)s->assembly->n_state;
     double *side[2], *change[2], *work, *axes = bough_arena_doubles(arena, n * n);
     bough_arena_each(arena, size, &side[0], &side[1], &work);
     bough_arena_each(arena, n, &change[0], &change[1]);
@@ -165,7 +165,7 @@ static void move_on(const bough_tree *tree, double fastest, double angle, double
 // (I − γJ)⁻¹ of a vector with all motions in it, those of equal blades alike.
 static bough_status respond(const bough_simulation *s, const bough_vibration_point *x, double time,
                             double gamma, const double *state, double *work, double *response) {
-    const bough_assembly *a = s->master->assembly;
+    const bough_assembly *a = s->assembly;
     const bough_blade_group *g = &x->group;
     bough_assembly_scales(a, response);
     for (int k = 0; k < a->n_state; k++) response[k] *= 1 + 0.5 * sin(k);
@@ -188,7 +188,7 @@ static bough_status respond(const bough_simulation *s, const bough_vibration_poi
 static bough_status find_change(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
                                 double point, double *largest) {
     static const double angles[] = {1, 2.3};
-    const bough_assembly *a = s->master->assembly;
+    const bough_assembly *a = s->assembly;
     size_t n = (size_t)a->n_state;
     double *state, *work, *present, *turned, *scale, *input, fastest = fastest_joint(s);
     *largest = 0;
@@ -240,7 +240,7 @@ static bough_status check_constant(bough_arena *arena, const bough_simulation *s
 static void leave_transform(const bough_simulation *s, bough_vibration_point *x) {
     x->group.n = x->group.n_row = x->def.n_part = x->def.n_row = 0;
     x->def.spin = 0;
-    bough_assembly_states(s->master->assembly, x->state);
+    bough_assembly_states(s->assembly, x->state);
     bough_whole_inputs(x->whole, x->def.time, x->state);
 }
 
@@ -447,7 +447,7 @@ static bough_status settle(bough_arena *arena, bough_simulation *s, bough_vibrat
                            bough_vibration_point *x, air_about *air) {
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     v->time = balanced ? bough_equilibrium_time(s) : 0;
-    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, s->master->assembly, v->time, 0, NULL));
+    if (balanced) BOUGH_TRY(bough_simulation_equilibrium(s, v->time, 0, NULL));
     BOUGH_TRY(bough_vibration_point_find(arena, s, v->time, x));
     v->spin = fabs(x->group.speed) < at_rest ? 0 : x->group.speed;
     v->n_blade = x->group.n;

@@ -51,7 +51,7 @@ static bough_status find_rods(bough_arena *arena, equilibrium *x) {
         memcpy(state + a->state_offset[rod.beam->port + 1], rod.state, size * sizeof *state);
         x->work.steps += rod.work.iterations;
     }
-    bough_equilibrium_set_state(s, a, x->time, state);
+    bough_equilibrium_set_state(s, x->time, state);
     return bough_ok();
 }
 
@@ -61,8 +61,7 @@ static bough_status balance(bough_arena *arena, int how, equilibrium *x) {
     if (x->one_by_one) status = find_rods(arena, x);
     if (x->one_by_one && status.code != BOUGH_FAILED) return status;
     x->one_by_one = false;
-    return bough_simulation_equilibrium(x->simulation, x->simulation->master->assembly, x->time, how,
-                                        &x->work);
+    return bough_simulation_equilibrium(x->simulation, x->time, how, &x->work);
 }
 
 // The equilibrium and the values of the run's channels there.
@@ -92,7 +91,7 @@ static bough_status find_equilibrium(bough_arena *arena, bough_simulation *s, bo
 }
 
 static bough_status find_growth(const equilibrium *x, bough_growth *growth) {
-    return bough_simulation_growth(x->simulation, x->simulation->master->assembly, x->time, false, growth);
+    return bough_simulation_growth(x->simulation, x->time, false, growth);
 }
 
 // If rods that were found one by one are unstable, the search of the whole scene may find a stable
@@ -376,8 +375,7 @@ static bough_status follow_path(bough_arena *arena, bough_simulation *s, const c
     t.value = bough_arena_doubles(arena, (size_t)channels.count + 1);
     BOUGH_TRY(bough_folder_open(folder, "static-path.csv", path, &t.file));
     write_path_head(&t);
-    bough_status followed =
-        bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_path_point}, &report);
+    bough_status followed = bough_simulation_path(s, (bough_path_listener){&t, write_path_point}, &report);
     if (report.points == 0) return bough_folder_close(path, t.file, followed);
     printf("path: %d points, %d limit points, %d steps, ", report.points, report.limits, report.steps);
     printf("to %.7g of the loads\nmesh error: not estimated along a path\n", report.factor);

@@ -76,8 +76,7 @@ static bool is_alike(const bough_simulation *s, const bough_blade_group *group, 
            fabs(angle) < even && pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
 }
 
-bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
-                                    const bough_assembly *assembly, bough_blade_group *group) {
+bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s, bough_blade_group *group) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     int n = turbine->node == NULL ? 0 : turbine->n_blade;
     *group = (bough_blade_group){0};
@@ -98,8 +97,8 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
     for (int k = 0; k < n; k++) {
         int member = group->blade[k]->port + 1, *row = group->row;
-        group->first[k] = assembly->state_offset[member];
-        group->first_input[k] = assembly->input_offset[member];
+        group->first[k] = s->assembly->state_offset[member];
+        group->first_input[k] = s->assembly->input_offset[member];
         for (int j = 0; j < group->n_row; j++) row[k * group->n_row + j] = group->first[k] + j;
     }
     return bough_ok();

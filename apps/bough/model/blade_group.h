@@ -14,8 +14,7 @@ typedef struct bough_blade_group {
 } bough_blade_group;
 
 // The blades in the simulation's present pose and motion.
-bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
-                                    const bough_assembly *assembly, bough_blade_group *group);
+bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s, bough_blade_group *group);
 
 // Gives every blade the mean of the blades' shapes, at rest in its frame: state (n_state), whose
 // inputs are `input` (n_input); mean (n_row) is work.

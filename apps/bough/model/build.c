@@ -177,18 +177,10 @@ static void connect(bough_builder *b) {
 }
 
 // The run starts from equilibrium: the members move there before their master is built.
-static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_def *def,
-                                     bough_simulation *s) {
-    bough_arena *arena = bough_arena_child(parent);
-    bough_assembly *assembly;
-    bough_status status = bough_assembly_build(arena, def, &assembly);
-    if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
-        status = bough_simulation_trim(arena, s, assembly);
-    } else if (bough_is_ok(&status)) {
-        status = bough_simulation_equilibrium(s, assembly, 0, 0, NULL);
-    }
-    bough_arena_destroy(arena);
-    return status;
+static bough_status find_equilibrium(bough_arena *arena, const bough_assembly_def *def, bough_simulation *s) {
+    BOUGH_TRY(bough_assembly_build(arena, def, &s->assembly));
+    bool in_operation = s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION;
+    return in_operation ? bough_simulation_trim(arena, s) : bough_simulation_equilibrium(s, 0, 0, NULL);
 }
 
 static bough_status build_master(bough_builder *b) {
@@ -208,6 +200,7 @@ static bough_status build_master(bough_builder *b) {
     def.load = s->sampled;
     if (sim->initial != BOUGH_SCENE_UNDEFORMED) BOUGH_TRY(find_equilibrium(b->arena, &def.assembly, s));
     bough_status status = bough_master_build(b->arena, &def, &s->master);
+    if (bough_is_ok(&status)) s->assembly = s->master->assembly;
     if (bough_scheme_at(sim->coupling.scheme)->one_system)
         return blame_solver(&sim->master, "master.solver", status);
     const bough_node *scheme = sim->coupling.node ? bough_node_find(sim->coupling.node, "scheme") : NULL;

@@ -49,7 +49,7 @@ bough_status bough_fmu_member_create(bough_arena *arena, const bough_scene_body 
 // in equilibrium there (equilibrium.h).
 
 // Needs a control law. BOUGH_FAILED if there is no steady operation.
-bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly);
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s);
 
 // -- the builder ----------------------------------------------------------------------------------
 

@@ -504,7 +504,7 @@ static const double of_call = 0.7, of_state = 0.015, of_coordinate = 0.5, of_mod
 static double work_of_tree(const bough_simulation *s) { return of_call + of_coordinate * s->tree->n_q; }
 
 static double work_of_whole(const bough_simulation *s) {
-    double work = work_of_tree(s) + of_state * s->master->assembly->n_state;
+    double work = work_of_tree(s) + of_state * s->assembly->n_state;
     for (int i = 0; i < s->n_beam; i++) work += s->beam[i].modal ? of_modal_body : 0;
     return work;
 }
@@ -512,7 +512,7 @@ static double work_of_whole(const bough_simulation *s) {
 // The tree is member 0; −1: the whole.
 static double work_of_member(const bough_simulation *s, int i) {
     if (i < 0) return work_of_whole(s);
-    return i == 0 ? work_of_tree(s) : of_call + of_state * s->master->assembly->member[i]->system.n_state;
+    return i == 0 ? work_of_tree(s) : of_call + of_state * s->assembly->member[i]->system.n_state;
 }
 
 // Evaluations for the tangents of closed loops, by central differences.
@@ -521,7 +521,7 @@ static double evaluations_of_tangent(const bough_simulation *s) {
 }
 
 double bough_simulation_work(const bough_simulation *s) {
-    const bough_assembly *a = s->master->assembly;
+    const bough_assembly *a = s->assembly;
     const bough_member *whole = bough_scheme_whole(s->master->coupling);
     double work = 0;
     for (int i = whole ? -1 : 0; i < a->n_member; i++) {

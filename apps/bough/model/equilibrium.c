@@ -12,11 +12,9 @@ double bough_equilibrium_time(const bough_simulation *s) {
     return last;
 }
 
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, double time,
-                                 const double *state) {
-    for (int i = 0; i < assembly->n_member; i++) {
-        bough_member_set(assembly->member[i], time, state + assembly->state_offset[i]);
-    }
+void bough_equilibrium_set_state(bough_simulation *s, double time, const double *state) {
+    const bough_assembly *a = s->assembly;
+    for (int i = 0; i < a->n_member; i++) bough_member_set(a->member[i], time, state + a->state_offset[i]);
     bough_simulation_update(s);
 }
 
@@ -93,7 +91,6 @@ static const double first_part = 0.5, least_part = 0.004, easier = 1.6, harder =
 
 typedef struct continuation {
     bough_simulation *simulation;
-    const bough_assembly *assembly;
     double time, exponent;
     bough_equilibrium_work *work;
     double *state; // (n_state) of the equilibrium found last
@@ -106,21 +103,19 @@ static bough_status find_stiffened(bough_arena *arena, void *data) {
     continuation *c = data;
     bough_equilibrium_def limits = bough_equilibrium_def_default();
     bough_simulation *s = c->simulation;
-    const bough_assembly *a = c->assembly;
     limits.steps = PATIENCE;
     if (c->exponent > 0) {
         BOUGH_TRY(build_stiffened(arena, c->simulation->scene, c->exponent, &s));
-        a = s->master->assembly;
+        limits.tolerance = near_tolerance;
     }
-    if (c->exponent > 0) limits.tolerance = near_tolerance;
     if (c->started) {
-        bough_equilibrium_set_state(s, a, c->time, c->state);
+        bough_equilibrium_set_state(s, c->time, c->state);
         limits.step = BOUGH_EQUILIBRIUM_LONGEST;
         limits.least = near_least;
         limits.steps = NEAR_STEPS;
     }
-    BOUGH_TRY(bough_equilibrium_search_within(limits, s, a, c->time, c->work));
-    bough_assembly_states(a, c->state);
+    BOUGH_TRY(bough_equilibrium_search_within(limits, s, c->time, c->work));
+    bough_assembly_states(s->assembly, c->state);
     c->started = true;
     return bough_ok();
 }
@@ -146,40 +141,37 @@ static bough_status soften(continuation *c) {
 // both find none that is stable, an unstable one is kept if `how` accepts it.
 static bough_status find_slack(continuation *c, const double *start) {
     bough_simulation *s = c->simulation;
-    const bough_assembly *a = c->assembly;
     bough_equilibrium_def whole = bough_equilibrium_def_default();
     whole.kinetic = bough_equilibrium_search_kinetic;
     bough_growth growth = {0}, fallen = {0};
-    bough_equilibrium_set_state(s, a, c->time, start);
+    bough_equilibrium_set_state(s, c->time, start);
     bough_status softened = s->n_rod > 0 ? soften(c) : bough_fail(BOUGH_FAILED, "no rods");
     bough_equilibrium_work work = *c->work;
-    if (bough_is_ok(&softened)) bough_simulation_growth(s, a, c->time, false, &growth);
+    if (bough_is_ok(&softened)) bough_simulation_growth(s, c->time, false, &growth);
     if (bough_is_ok(&softened) && growth.rate == 0) return softened;
     // downhill, with any number of steps
-    bough_equilibrium_set_state(s, a, c->time, start);
+    bough_equilibrium_set_state(s, c->time, start);
     *c->work = (bough_equilibrium_work){0};
-    bough_status status = bough_equilibrium_search_within(whole, s, a, c->time, c->work);
+    bough_status status = bough_equilibrium_search_within(whole, s, c->time, c->work);
     if (!bough_is_ok(&softened) || !(c->how & BOUGH_EQUILIBRIUM_UNSTABLE)) return status;
-    if (bough_is_ok(&status)) bough_simulation_growth(s, a, c->time, false, &fallen);
+    if (bough_is_ok(&status)) bough_simulation_growth(s, c->time, false, &fallen);
     if (bough_is_ok(&status) && fallen.rate == 0) return status;
-    bough_equilibrium_set_state(s, a, c->time, c->state);
+    bough_equilibrium_set_state(s, c->time, c->state);
     *c->work = work;
     return softened;
 }
 
 // The searches on the scene's own mesh; a single one in operation, where trim.c varies speed and pitch.
 static bough_status find_on_mesh(bough_arena *arena, continuation *c) {
-    const bough_simulation *s = c->simulation;
+    bough_simulation *s = c->simulation;
     bool once = s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION;
     bough_equilibrium_def limits = bough_equilibrium_def_default();
-    size_t n = (size_t)c->assembly->n_state + 1;
     double *start;
-    bough_arena_each(arena, n, &start, &c->state);
-    bough_assembly_states(c->assembly, start);
+    bough_arena_each(arena, (size_t)s->assembly->n_state + 1, &start, &c->state);
+    bough_assembly_states(s->assembly, start);
     if (!once) limits.steps = s->n_rod > 0 ? PATIENCE : RIGID_STEPS;
     if (!once && s->n_rod > 0) limits.least = least_step;
-    bough_status status =
-        bough_equilibrium_search_within(limits, c->simulation, c->assembly, c->time, c->work);
+    bough_status status = bough_equilibrium_search_within(limits, s, c->time, c->work);
     return status.code == BOUGH_FAILED && !once ? find_slack(c, start) : status;
 }
 
@@ -228,7 +220,6 @@ static bough_status find_on_finer(bough_arena *arena, void *data) {
         if (scene->body[i].fidelity == BOUGH_SCENE_ROD) scene->body[i].rod.n_segment *= x->times;
     }
     BOUGH_TRY(bough_simulation_build(arena, scene, &fine.simulation));
-    fine.assembly = fine.simulation->master->assembly;
     fine.started = false;
     return find_on_mesh(arena, &fine);
 }
@@ -264,21 +255,22 @@ static bough_status find_from_anywhere(bough_arena *arena, continuation *c) {
 static bough_status find_equilibrium(bough_arena *arena, void *data) {
     continuation *c = data;
     if (!(c->how & BOUGH_EQUILIBRIUM_NEAR)) return find_from_anywhere(arena, c);
-    double *start = c->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state + 1);
-    bough_assembly_states(c->assembly, start);
+    const bough_assembly *a = c->simulation->assembly;
+    double *start = c->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    bough_assembly_states(a, start);
     c->started = true;
     bough_status status = find_stiffened(arena, c);
     if (bough_is_ok(&status)) return status; // otherwise `start` is unchanged
-    bough_equilibrium_set_state(c->simulation, c->assembly, c->time, start);
+    bough_equilibrium_set_state(c->simulation, c->time, start);
     c->started = false;
     *c->work = (bough_equilibrium_work){0};
     return find_from_anywhere(arena, c);
 }
 
-bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          int how, bough_equilibrium_work *work) {
+bough_status bough_simulation_equilibrium(bough_simulation *s, double time, int how,
+                                          bough_equilibrium_work *work) {
     bough_equilibrium_work done = {0};
-    continuation c = {s, assembly, time, .work = &done, .how = how};
+    continuation c = {s, time, .work = &done, .how = how};
     bough_status status = bough_arena_use(find_equilibrium, &c);
     if (work) *work = done;
     return status;
@@ -289,9 +281,9 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 static bough_status report_point(void *self, double factor, const double *state, bool limit) {
     const bough_equilibrium_search *x = self;
     double time = fmin(fmax(factor, 0), 1) * bough_equilibrium_time(x->simulation);
-    bough_equilibrium_set_state(x->simulation, x->assembly, time, state);
+    bough_equilibrium_set_state(x->simulation, time, state);
     bough_whole_inputs(x->whole, time, state);
-    size_t size = (size_t)x->assembly->n_input * sizeof(double);
+    size_t size = (size_t)x->simulation->assembly->n_input * sizeof(double);
     memcpy(x->simulation->master->coupling->input, x->whole->input, size);
     return x->listener.point(x->listener.self, time, factor, limit);
 }
@@ -330,10 +322,10 @@ static bough_status walk_path(bough_arena *arena, void *self) {
     return bough_path_follow(arena, x->whole, &def, x->state, x->report);
 }
 
-bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
-                                   bough_path_listener listener, bough_path_report *report) {
+bough_status bough_simulation_path(bough_simulation *s, bough_path_listener listener,
+                                   bough_path_report *report) {
     bough_equilibrium_work work = {0};
-    bough_equilibrium_search x = {s, assembly, .limits = bough_equilibrium_def_default(), .work = &work};
+    bough_equilibrium_search x = {s, .limits = bough_equilibrium_def_default(), .work = &work};
     x.listener = listener;
     x.report = report;
     *report = (bough_path_report){0};

@@ -34,10 +34,10 @@ enum {
     BOUGH_EQUILIBRIUM_FINER = 7,
 };
 
-// Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
+// Brings the members of the simulation to equilibrium under the loads at `time`;
 // their clocks are set to it. `work`: NULL: not wanted. BOUGH_FAILED names the body that finds none.
-bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                                          int how, bough_equilibrium_work *work);
+bough_status bough_simulation_equilibrium(bough_simulation *s, double time, int how,
+                                          bough_equilibrium_work *work);
 
 // Growth of motions from an equilibrium by the tangents, with constant forces of the air. If something
 // rotates, the tangents of one azimuth do not determine oscillations: their growth is not given.
@@ -52,10 +52,9 @@ typedef struct bough_growth {
     int segments;
 } bough_growth;
 
-// About the states of the assembly; `slow`: only by the twelve eigenvalues nearest to 1 over the
+// About the present states; `slow`: only by the twelve eigenvalues nearest to 1 over the
 // scene's time, at an eighth of the cost.
-bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     bool slow, bough_growth *growth);
+bough_status bough_simulation_growth(bough_simulation *s, double time, bool slow, bough_growth *growth);
 
 // Called at each point of a path, with members, inputs and the simulation's view there. `time`: when the
 // loads are those of the point [s]; `factor`: of the full loads; `limit`: it has a local maximum or minimum
@@ -69,16 +68,15 @@ typedef struct bough_path_listener {
 // loads that do not grow.
 bough_status bough_equilibrium_check_path(const bough_simulation *s);
 
-// Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
+// Follows the equilibria of the members as the loads grow from those at time 0 to those at
 // bough_equilibrium_time, in proportion, through limit points (cosim/analysis/path.h). BOUGH_INVALID by
 // bough_equilibrium_check_path, BOUGH_FAILED when the path ends before.
-bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
-                                   bough_path_listener listener, bough_path_report *report);
+bough_status bough_simulation_path(bough_simulation *s, bough_path_listener listener,
+                                   bough_path_report *report);
 
 // Brings `to`, a simulation of the same scene with other meshes, to rest in the shape of `from`: rods
 // linearly between vertices, joints as they are.
 void bough_simulation_take_shape(const bough_simulation *from, bough_simulation *to);
 
 // Sets the states of all members (n_state), with prescribed motions as they are at `time`; `view` follows.
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, double time,
-                                 const double *state);
+void bough_equilibrium_set_state(bough_simulation *s, double time, const double *state);

@@ -43,10 +43,11 @@ static const bough_eigen_pair *growing_oscillation(const bough_eigen_pair *pair,
 
 // The state with the largest amplitude relative to its scale.
 static int largest_row(bough_arena *arena, const bough_equilibrium_search *x, const bough_eigen_pair *pair) {
-    double largest = 0, *scale = bough_arena_doubles(arena, (size_t)x->assembly->n_state);
+    const bough_assembly *a = x->simulation->assembly;
+    double largest = 0, *scale = bough_arena_doubles(arena, (size_t)a->n_state);
     int row = 0;
-    bough_assembly_scales(x->assembly, scale);
-    for (int k = 0; k < x->assembly->n_state; k++) {
+    bough_assembly_scales(a, scale);
+    for (int k = 0; k < a->n_state; k++) {
         double size = hypot(pair->shape_real[k], pair->shape_imag[k]) / scale[k];
         if (size > largest) row = k;
         largest = fmax(largest, size);
@@ -58,7 +59,7 @@ static int largest_row(bough_arena *arena, const bough_equilibrium_search *x, co
 static double *take_motion(bough_arena *arena, const bough_equilibrium_search *x,
                            const bough_eigen_pair *pair) {
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->assembly;
+    const bough_assembly *a = x->simulation->assembly;
     size_t n = (size_t)a->n_state, speeds = (size_t)s->tree->n_v * sizeof(double);
     double *motion = bough_arena_copy(arena, x->state, n * sizeof *motion);
     memcpy(motion + s->tree->n_q, pair->shape_real + s->tree->n_q, speeds);
@@ -75,15 +76,15 @@ static double *take_motion(bough_arena *arena, const bough_equilibrium_search *x
 // Twice the kinetic energy of its sections' rotation about the rod's axis.
 static double twist_energy(const bough_equilibrium_search *x, const bough_beam *beam, const double *motion) {
     int n = beam->mesh->n;
-    const double *w =
-        motion + x->assembly->state_offset[beam->port + 1] + (size_t)(BOUGH_ROD_W + 2) * (size_t)n;
+    const double *w = motion + x->simulation->assembly->state_offset[beam->port + 1] +
+                      (size_t)(BOUGH_ROD_W + 2) * (size_t)n;
     double sum = 0;
     for (int i = 0; i < n; i++) sum += beam->mesh->vertex[i + 1].inertia[2] * w[i] * w[i];
     return sum;
 }
 
 static double twist_reserve(bough_arena *arena, const bough_equilibrium_search *x, const bough_beam *beam) {
-    const bough_assembly *a = x->assembly;
+    const bough_assembly *a = x->simulation->assembly;
     int member = beam->port + 1;
     bough_rod_scratch scratch;
     bough_rod_scratch_init(&scratch, arena, beam->mesh);
@@ -155,10 +156,9 @@ static bough_status find_growth(bough_arena *arena, void *self) {
     return bough_ok();
 }
 
-bough_status bough_simulation_growth(bough_simulation *s, const bough_assembly *assembly, double time,
-                                     bool slow, bough_growth *growth) {
+bough_status bough_simulation_growth(bough_simulation *s, double time, bool slow, bough_growth *growth) {
     bough_equilibrium_search x = {
-        .simulation = s, .assembly = assembly, .time = time, .growth = growth, .points = slow ? 1 : POINTS};
+        .simulation = s, .time = time, .growth = growth, .points = slow ? 1 : POINTS};
     *growth = (bough_growth){0};
     return bough_arena_use(find_growth, &x);
 }

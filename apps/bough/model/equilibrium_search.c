@@ -85,7 +85,7 @@ static const char *floating_body(bough_arena *arena, const bough_scene *scene) {
 }
 
 // The states are the last ones reached.
-static bough_status explain(bough_arena *arena, const bough_simulation *s, const bough_assembly *assembly,
+static bough_status explain(bough_arena *arena, const bough_simulation *s,
                             const bough_equilibrium_report *report) {
     char joint[200] = "";
     const char *loose = loose_joint(s->scene), *floating = floating_body(arena, s->scene);
@@ -109,8 +109,8 @@ static bough_status explain(bough_arena *arena, const bough_simulation *s, const
         BOUGH_FAILED,
         "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
         "in a step, at a rate of %.3g; %sthe load is too large (try a part of it%s), or the mesh too coarse",
-        bough_simulation_body_of(s, assembly, report->row), report->steps, report->change, report->rate,
-        joint, path ? ", or 'bough static --path'" : "");
+        bough_simulation_body_of(s, report->row), report->steps, report->change, report->rate, joint,
+        path ? ", or 'bough static --path'" : "");
 }
 
 // -- the search -----------------------------------------------------------------------------------
@@ -121,8 +121,8 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
     bough_equilibrium_report report;
     bough_status status = bough_equilibrium_find(arena, x->whole, def, x->state, &report);
     x->work->steps += report.steps;
-    bough_equilibrium_set_state(s, x->assembly, x->time, x->state);
-    if (status.code == BOUGH_FAILED) return explain(arena, s, x->assembly, &report);
+    bough_equilibrium_set_state(s, x->time, x->state);
+    if (status.code == BOUGH_FAILED) return explain(arena, s, &report);
     if (bough_is_ok(&status)) status = explain_rods(s, report.steps);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     def->kept = report.kept;
@@ -131,10 +131,10 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
 
 static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search *x,
                                    bough_equilibrium_def *def) {
-    size_t n = (size_t)x->assembly->n_state;
+    size_t n = (size_t)x->simulation->assembly->n_state;
     double *before, *scale, change = 0;
     bough_arena_each(arena, n, &before, &scale);
-    bough_assembly_scales(x->assembly, scale);
+    bough_assembly_scales(x->simulation->assembly, scale);
     while (x->work->samples < SAMPLES) {
         memcpy(before, x->state, n * sizeof *before);
         bough_aero_link_hold(x->simulation->aero, def->time);
@@ -155,7 +155,7 @@ static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search 
 double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->assembly;
+    const bough_assembly *a = s->assembly;
     double turn = 0;
     for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
     for (int k = 0; k < s->n_beam; k++) {
@@ -183,7 +183,7 @@ double bough_equilibrium_search_move(void *self, const double *state, const doub
 void bough_equilibrium_search_rest(void *self, double *state) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->assembly;
+    const bough_assembly *a = s->assembly;
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
@@ -213,7 +213,7 @@ double bough_equilibrium_search_kinetic(void *self, const double *state) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
-        const double *own = state + x->assembly->state_offset[beam->port + 1];
+        const double *own = state + s->assembly->state_offset[beam->port + 1];
         sum += bough_rod_energy(beam->mesh, own, own + (size_t)BOUGH_ROD_U * (size_t)beam->mesh->n);
     }
     return sum;
@@ -229,17 +229,17 @@ bool bough_equilibrium_search_turns(const bough_equilibrium_search *x) {
 
 void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x) {
     bough_simulation *s = x->simulation;
-    size_t states = (size_t)x->assembly->n_state + 1;
+    size_t states = (size_t)s->assembly->n_state + 1;
     bough_arena_each(arena, states, &x->state, &x->scale);
-    x->unit = bough_equilibrium_find_units(s, x->assembly, x->scale);
+    x->unit = bough_equilibrium_find_units(s, x->scale);
     x->change = bough_arena_doubles(arena, BOUGH_ROD_CHANGE * bough_simulation_most_vertices(s));
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    x->whole = bough_whole_create(arena, x->assembly, NULL);
+    x->whole = bough_whole_create(arena, s->assembly, NULL);
     for (int k = 0; k < s->n_sampled; k++) {
         if (s->sampled[k].begin) s->sampled[k].begin(s->sampled[k].self, x->time);
     }
     bough_whole_hold(arena, x->whole, bough_equilibrium_held(s->tree, true, row), row);
-    bough_assembly_states(x->assembly, x->state);
+    bough_assembly_states(s->assembly, x->state);
     bough_tree_prescribe(s->tree, x->time, x->state);
     bough_equilibrium_search_rest(x, x->state);
     x->rests = bough_equilibrium_search_turns(x) || s->tree->n_closures == 0;
@@ -266,10 +266,8 @@ static bough_status balance_members(bough_arena *arena, void *self) {
                                : bough_equilibrium_search_balance(arena, x, &def);
 }
 
-bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
-                                             const bough_assembly *assembly, double time,
+bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s, double time,
                                              bough_equilibrium_work *work) {
-    bough_equilibrium_search x = {
-        .simulation = s, .assembly = assembly, .time = time, .limits = limits, .work = work};
+    bough_equilibrium_search x = {.simulation = s, .time = time, .limits = limits, .work = work};
     return bough_arena_use(balance_members, &x);
 }

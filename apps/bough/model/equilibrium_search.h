@@ -16,7 +16,6 @@ typedef struct bough_equilibrium_units {
 // An equilibrium, its growth or a path of equilibria, within bough_arena_use.
 typedef struct bough_equilibrium_search {
     bough_simulation *simulation;
-    const bough_assembly *assembly;
     double time;
     bough_equilibrium_def limits; // step, least, tolerance and steps of an equilibrium
     bough_equilibrium_work *work; // of an equilibrium
@@ -34,9 +33,8 @@ typedef struct bough_equilibrium_search {
     double *change; // of one rod's vertices, see rod_static.h
 } bough_equilibrium_search;
 
-// The units of a scene, and with them the scales of the assembly's states (n_state).
-bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, const bough_assembly *assembly,
-                                                     double *scale);
+// The units of a scene, and with them the scales of the states (n_state).
+bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, double *scale);
 
 // The system and its states at rest at the time.
 void bough_equilibrium_search_set_up(bough_arena *arena, bough_equilibrium_search *x);
@@ -57,6 +55,5 @@ bough_status bough_equilibrium_search_balance(bough_arena *arena, bough_equilibr
                                               bough_equilibrium_def *def);
 
 // One search from the members' states, with samples of the air.
-bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s,
-                                             const bough_assembly *assembly, double time,
+bough_status bough_equilibrium_search_within(bough_equilibrium_def limits, bough_simulation *s, double time,
                                              bough_equilibrium_work *work);

@@ -133,14 +133,13 @@ static void scale_rod(int vertices, bough_equilibrium_units unit, double *scale)
     }
 }
 
-bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, const bough_assembly *a,
-                                                     double *scale) {
+bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, double *scale) {
     bough_equilibrium_units unit = find_units(s);
-    bough_assembly_scales(a, scale);
+    bough_assembly_scales(s->assembly, scale);
     scale_links(s->tree, unit, scale);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        if (beam->rod) scale_rod(beam->mesh->n, unit, scale + a->state_offset[beam->port + 1]);
+        if (beam->rod) scale_rod(beam->mesh->n, unit, scale + s->assembly->state_offset[beam->port + 1]);
     }
     return unit;
 }

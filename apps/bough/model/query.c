@@ -290,11 +290,11 @@ void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *bea
     }
 }
 
-const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row) {
+const char *bough_simulation_body_of(const bough_simulation *s, int row) {
     const bough_tree *tree = s->tree;
     int member = 0;
-    while (row >= assembly->state_offset[member + 1]) member++;
-    if (member > 0) return assembly->member[member]->system.name;
+    while (row >= s->assembly->state_offset[member + 1]) member++;
+    if (member > 0) return s->assembly->member[member]->system.name;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
@@ -302,7 +302,7 @@ const char *bough_simulation_body_of(const bough_simulation *s, const bough_asse
             return tree->bodies[link->body].name;
         }
     }
-    return assembly->member[0]->system.name;
+    return s->leader.system.name;
 }
 
 bough_motion_point bough_simulation_joint_point(const bough_simulation *s, int body) {

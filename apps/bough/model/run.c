@@ -28,7 +28,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     bough_validity_check_equilibrium(run->simulation);
     run->channels = bough_channels_start(arena);
     BOUGH_TRY(bough_simulation_channels(run->simulation, &run->channels));
-    size_t n = (size_t)run->simulation->master->assembly->n_member;
+    size_t n = (size_t)run->simulation->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
     // the caller may copy the run: the companion has a list of its own
@@ -194,7 +194,7 @@ bough_statistics bough_run_statistics(const bough_run *run, int member) {
 
 // The solvers count the work of this process; `earlier` has that of the processes that it continues.
 static void take_statistics(bough_run *run, bough_snapshot *s) {
-    const bough_assembly *a = run->simulation->master->assembly;
+    const bough_assembly *a = run->simulation->assembly;
     for (int i = 0; i <= a->n_member; i++) {
         bough_statistics *earlier = &run->earlier[i];
         bough_statistics total = bough_run_statistics(run, i), now = total;

@@ -38,7 +38,8 @@ typedef struct bough_simulation {
     double *acceleration;  // of the tree (n_v), scratch of queries
     double *accelerated;   // (1) time for which `view` has its links' accelerations [s]; NAN: none
     bough_member leader;
-    int first_marker; // of the tree, the first of those that the scene names
+    bough_assembly *assembly; // of leader, rods and FMUs: the master's, and one before it is built
+    int first_marker;         // of the tree, the first of those that the scene names
     int n_beam;
     bough_beam *beam;  // (n_beam) bodies that have a rod, in the scene's order
     bough_member *rod; // (n_rod + n_fmu) in port order, the FMUs last
@@ -132,7 +133,7 @@ double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *bla
 void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
 
 // The name of the body, or of the group of bodies, to which row `row` of the assembly's states belongs.
-const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row);
+const char *bough_simulation_body_of(const bough_simulation *s, int row);
 
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);

@@ -12,7 +12,6 @@ static const double standing = 0.1;              // of the reference speed: a sl
 
 typedef struct search {
     bough_simulation *simulation;
-    const bough_assembly *assembly;
     const bough_controller_def *law;
     double *state; // (n_state)
     double gear;
@@ -30,11 +29,11 @@ static double surplus(search *x, double speed, double pitch) {
         x->status = bough_fail(BOUGH_FAILED, "no steady operation found in %d tries", MOST_TRIES);
     if (!bough_is_ok(&x->status)) return (double)NAN;
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &q, &v);
-    bough_assembly_states(x->assembly, x->state);
+    bough_assembly_states(s->assembly, x->state);
     s->tree->initial[v] = x->state[v] = speed;
-    bough_equilibrium_set_state(s, x->assembly, 0, x->state);
+    bough_equilibrium_set_state(s, 0, x->state);
     bough_control_link_stand(s->control, speed, pitch);
-    x->status = bough_simulation_equilibrium(s, x->assembly, 0, 0, NULL);
+    x->status = bough_simulation_equilibrium(s, 0, 0, NULL);
     if (!bough_is_ok(&x->status)) return (double)NAN;
     double torque = bough_aero_link_data(s->aero, &factor)->torque;
     double generator = x->gear * bough_controller_torque(x->law, x->gear * speed, pitch);
@@ -102,13 +101,12 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
     }
 }
 
-bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly) {
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s) {
     const bough_scene_control *control = &s->scene->control;
     search x = {.simulation = s,
-                .assembly = assembly,
                 .law = &control->law,
                 .gear = control->gear_ratio,
-                .state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1),
+                .state = bough_arena_doubles(arena, (size_t)s->assembly->n_state + 1),
                 .status = bough_ok()};
     bool pitches = bough_control_link_pitches(s->control);
     double speed = x.law->reference_speed / x.gear;

@@ -315,12 +315,11 @@ static int find_body(const bough_scene *scene, const char *name) {
 
 void bough_validity_check_equilibrium(bough_simulation *s) {
     bough_growth growth;
-    const bough_assembly *a = s->master->assembly;
     if (s->scene->simulation.initial == BOUGH_SCENE_UNDEFORMED) return;
-    bough_status status = bough_simulation_growth(s, a, 0, true, &growth);
+    bough_status status = bough_simulation_growth(s, 0, true, &growth);
     double rate = fmax(growth.rate, growth.oscillation);
     if (!bough_is_ok(&status) || !(rate > 0)) return;
-    int body = find_body(s->scene, bough_simulation_body_of(s, a, growth.row));
+    int body = find_body(s->scene, bough_simulation_body_of(s, growth.row));
     pass(s->validity, BOUGH_LIMIT_START, body, 0, rate);
 }
 
@@ -366,18 +365,18 @@ typedef struct fastest {
 // The body whose state changes fastest, measured by the tolerance.
 static bough_status find_fastest(bough_arena *arena, void *self) {
     fastest *f = self;
-    const bough_master *m = f->simulation->master;
-    size_t n = (size_t)m->assembly->n_state;
+    const bough_simulation *s = f->simulation;
+    size_t n = (size_t)s->assembly->n_state;
     double *state, *rate, *scale, largest = 0;
     bough_arena_each(arena, n, &state, &rate, &scale);
-    bough_assembly_states(m->assembly, state);
-    bough_assembly_scales(m->assembly, scale);
-    bough_whole *whole = bough_whole_create_evaluation(arena, m->assembly, NULL);
-    bough_status status = bough_whole_rate(whole, m->time, state, rate);
+    bough_assembly_states(s->assembly, state);
+    bough_assembly_scales(s->assembly, scale);
+    bough_whole *whole = bough_whole_create_evaluation(arena, s->assembly, NULL);
+    bough_status status = bough_whole_rate(whole, s->master->time, state, rate);
     for (int k = 0; bough_is_ok(&status) && k < (int)n; k++) {
         if (!(fabs(rate[k]) / scale[k] > largest)) continue;
         largest = fabs(rate[k]) / scale[k];
-        f->body = find_body(f->simulation->scene, bough_simulation_body_of(f->simulation, m->assembly, k));
+        f->body = find_body(s->scene, bough_simulation_body_of(s, k));
     }
     return status;
 }
@@ -395,7 +394,7 @@ void bough_validity_check_work(bough_simulation *s) {
     double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts from 0
     v->steps = steps;
     if (taken < many_steps || v->limit[BOUGH_LIMIT_STEPS].passed) return;
-    int states = s->master->assembly->n_state;
+    int states = s->assembly->n_state;
     v->work += taken * (states > least_states ? states : least_states);
     if (v->work < most_work) return;
     pass_fastest(s, BOUGH_LIMIT_STEPS, taken);

@@ -57,7 +57,7 @@ TEST(weight_bends_a_cantilever_as_beam_theory_says) {
     double f[2][2], weight = 9.8 * mass, own = 9.8 * 1e-4;
     flexibility(f);
     check_build(arena, s, tip_weight, no_sets);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
+    check_ok(bough_simulation_equilibrium(s, 0, 0, NULL));
     double expected = weight * (f[0][0] + arm * f[0][1]) + own * pow(length, 4) / (8 * bending);
     check_near(tip_of(s).x, expected, 2e-5, 0); // the body's x points down
     bough_quaternion p;
@@ -106,7 +106,7 @@ TEST(spring_takes_hold_of_a_rod) {
     double f[2][2];
     flexibility(f);
     check_build(arena, s, "tests/data/scenes/wire.yaml", no_sets);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
+    check_ok(bough_simulation_equilibrium(s, 0, 0, NULL));
     double sag = own * pow(length, 4) / (8 * bending);
     double force = (slack + sag) / (1 / wire + f[0][0]), tension;
     bough_vec3 direction;
@@ -160,7 +160,7 @@ TEST(rods_in_a_row_are_the_whole) {
 TEST(weight_at_an_inner_vertex_bends_the_beam_as_theory_says) {
     const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
     check_build(arena, s, "tests/data/scenes/mid-weight.yaml", no_sets);
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, 0, NULL));
+    check_ok(bough_simulation_equilibrium(s, 0, 0, NULL));
     double expected = weight * (pow(from, 3) / (3 * bending) + from / shear +
                                 (length - from) * from * from / (2 * bending)) +
                       own * pow(length, 4) / (8 * bending);

@@ -7,25 +7,25 @@ static const char runup[] = "apps/turbine/runup.yaml";
 
 static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     bough_equilibrium_work work;
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), 0, &work));
+    check_ok(bough_simulation_equilibrium(s, bough_equilibrium_time(s), 0, &work));
     return work;
 }
 
 // Of the loads at the start: why there is none, and the steps to one that may be unstable.
 static bough_status seek(bough_simulation *s) {
     bough_equilibrium_work work;
-    return bough_simulation_equilibrium(s, s->master->assembly, 0, 0, &work);
+    return bough_simulation_equilibrium(s, 0, 0, &work);
 }
 
 static int steps_to_any(bough_simulation *s) {
     bough_equilibrium_work work;
-    check_ok(bough_simulation_equilibrium(s, s->master->assembly, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
+    check_ok(bough_simulation_equilibrium(s, 0, BOUGH_EQUILIBRIUM_UNSTABLE, &work));
     return work.steps;
 }
 
 static bough_growth growth_of(bough_simulation *s) {
     bough_growth growth;
-    check_ok(bough_simulation_growth(s, s->master->assembly, 0, false, &growth));
+    check_ok(bough_simulation_growth(s, 0, false, &growth));
     return growth;
 }
 
@@ -508,7 +508,7 @@ TEST(finer_mesh_starts_in_the_shape_found) {
     int first = equilibrium_of(coarse).steps;
     bough_simulation_take_shape(coarse, fine);
     check_near(fine->leader.state[0], coarse->leader.state[0], 0, 0);
-    check_ok(bough_simulation_equilibrium(fine, fine->master->assembly, 0, BOUGH_EQUILIBRIUM_FINER, &work));
+    check_ok(bough_simulation_equilibrium(fine, 0, BOUGH_EQUILIBRIUM_FINER, &work));
     printf("%d steps, then %d\n", first, work.steps);
     assert_in_range(work.steps, 1, 12);
     bough_channels list = scene_channels(arena, coarse), finer_list = scene_channels(arena, fine);

@@ -25,7 +25,7 @@ static bough_status note(void *self, double time, double share, bool limit) {
 
 static bough_status walk(bough_simulation *s, trace *t, bough_path_report *report) {
     *t = (trace){.simulation = s};
-    return bough_simulation_path(s, s->master->assembly, (bough_path_listener){t, note}, report);
+    return bough_simulation_path(s, (bough_path_listener){t, note}, report);
 }
 
 // What presses the slide down by u: its bar from (1, −0.3) is 1000 N/m.
@@ -90,7 +90,7 @@ TEST(closures_carry_the_load_of_the_point) {
     check_ok(bough_simulation_channels(r.simulation, &r.channels));
     bough_path_report report;
     bough_path_listener listener = {&r, check_reaction};
-    check_ok(bough_simulation_path(r.simulation, r.simulation->master->assembly, listener, &report));
+    check_ok(bough_simulation_path(r.simulation, listener, &report));
     assert_true(r.n > 3);
 }
 
