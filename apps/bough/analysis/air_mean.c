@@ -10,7 +10,7 @@ struct bough_air_mean {
 };
 
 int bough_air_tangent_blade(const bough_simulation *s, const bough_blade_group *group, int k) {
-    return bough_scene_blade(s->scene, (int)(group->blade[k]->body - s->scene->body));
+    return bough_scene_blade(s->scene, group->blade[k]->index);
 }
 
 const int *bough_air_tangent_rows(bough_arena *arena, const bough_simulation *s,

@@ -93,7 +93,7 @@ static void begin_change(work *w, const double *state) {
 static bool meets_air(const bough_simulation *s, int member) {
     if (member == 0 || s->drag != NULL) return true;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        if (bough_simulation_beam(s, s->scene->turbine.blade[b])->port + 1 == member) return true;
+        if (bough_simulation_blade(s, b)->port + 1 == member) return true;
     }
     return false;
 }
@@ -371,9 +371,9 @@ static bough_status follow_group(bough_arena *arena, work *w, const double *stat
 
 // -- all ------------------------------------------------------------------------------------------
 
-static bool is_of_group(const bough_assembly *a, const bough_blade_group *group, int member) {
+static bool is_of_group(const bough_blade_group *group, int member) {
     for (int k = 0; k < group->n; k++)
-        if (a->state_offset[member] == group->first[k]) return true;
+        if (group->blade[k]->port + 1 == member) return true;
     return false;
 }
 
@@ -382,7 +382,7 @@ static bough_status follow_others(work *w, const double *state, const bough_blad
                                   bough_air_tangent *t) {
     const bough_assembly *a = w->simulation->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        if (!meets_air(w->simulation, i) || (found && is_of_group(a, found, i))) continue;
+        if (!meets_air(w->simulation, i) || (found && is_of_group(found, i))) continue;
         BOUGH_TRY(follow_member(w, state, i, t));
     }
     for (int k = 0; k < w->n_air && !found; k++)

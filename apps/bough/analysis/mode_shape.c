@@ -47,7 +47,7 @@ static void take(bough_arena *arena, mode_shape *x) {
 static void expand(const mode_shape *x, const bough_beam *beam, int part, double step, double *to) {
     const bough_simulation *s = x->simulation;
     const bough_frame *frame = &s->tree->markers[beam->marker];
-    int at = x->simulation->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
+    int at = bough_beam_row(x->simulation, beam), n = s->rod[beam->port].system.n_state;
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     double input[BOUGH_ROD_INPUTS] = {0}, change[6] = {0}; // gravity does not matter
     bough_twist_store(twist, input);
@@ -85,7 +85,7 @@ static void set_beams(const mode_shape *x) {
         const bough_beam *beam = &x->simulation->beam[k];
         beam_shape *b = &x->beam[k];
         if (beam->port < 0) continue;
-        int at = x->simulation->assembly->state_offset[beam->port + 1];
+        int at = bough_beam_row(x->simulation, beam);
         if (beam->modal != NULL) {
             set_modal(x, beam, b);
             continue;
@@ -208,7 +208,7 @@ static int body_on(const bough_simulation *s, int link) {
     }
     for (int k = 0; k < s->n_beam && body >= n; k++) {
         if (s->beam[k].end == s->tree->links[link].body - n) {
-            body = (int)(s->beam[k].body - s->scene->body);
+            body = s->beam[k].index;
         }
     }
     return body;
@@ -251,7 +251,7 @@ static void set_shares(const mode_shape *x, bough_scene_mode *mode) {
     }
     if (blades <= mode->share[mode->body]) return;
     mode->blades = true;
-    mode->body = (int)(x->group->blade[0]->body - s->scene->body);
+    mode->body = x->group->blade[0]->index;
 }
 
 // -- bending ------------------------------------------------------------------------------------

@@ -43,7 +43,7 @@ static void set_input(void *self, int k, double change, double *state) {
     case GENERATOR_TORQUE:
     case COLLECTIVE_PITCH:
         torque = bough_control_link_generator(s->control).torque;
-        double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
+        double pitch = bough_simulation_pitch(s, bough_simulation_blade(s, 0));
         if (w->input[k].kind == GENERATOR_TORQUE) torque = value;
         if (w->input[k].kind == COLLECTIVE_PITCH) pitch = value;
         bough_control_link_put(s->control, torque, pitch);
@@ -76,7 +76,7 @@ static void find_inputs(work *w, bough_state_space *to) {
     if (s->control != NULL) {
         double torque = bough_control_link_generator(s->control).torque;
         add_input(w, GENERATOR_TORQUE, 0, torque, "generator torque, fast shaft", "N m", to);
-        double pitch = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[0]));
+        double pitch = bough_simulation_pitch(s, bough_simulation_blade(s, 0));
         if (bough_control_link_pitches(s->control))
             add_input(w, COLLECTIVE_PITCH, 0, pitch, "collective pitch", "rad", to);
     }

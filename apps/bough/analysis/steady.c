@@ -39,13 +39,13 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
     }
     int body = (int)(pivot - s->scene->body);
     turning->axis = bough_simulation_joint_axis(s, body);
-    turning->centre = bough_tree_frame_pose(s->view, &s->tree->bodies[body]).position;
+    turning->centre = bough_body_pose(s, body).position;
     return bough_ok();
 }
 
 // The forces of bodies on a rod are not known here.
 static bough_status check_carries_none(const bough_simulation *s, const bough_beam *beam) {
-    int carried = bough_scene_carried_by(s->scene, (int)(beam->body - s->scene->body));
+    int carried = bough_scene_carried_by(s->scene, beam->index);
     if (carried < 0) return bough_ok();
     return bough_fail(BOUGH_INVALID,
                       "rod %s carries the body %s, whose forces a single rod does not have: take "
@@ -55,8 +55,7 @@ static bough_status check_carries_none(const bough_simulation *s, const bough_be
 
 // Twist and gravity of the body's frame.
 static void set_input(const bough_simulation *s, const bough_turning *turning, bough_steady *x) {
-    const bough_frame *frame = &s->tree->markers[x->beam->marker];
-    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_transform pose = bough_beam_pose(s, x->beam);
     bough_vec3 gravity = s->tree->gravity;
     bough_vec3 omega = bough_scale(turning->speed, turning->axis);
     bough_vec3 arm = bough_sub(pose.position, turning->centre);

@@ -201,7 +201,7 @@ static void find_row(const bough_section_loads *x, int table, int i, double valu
     value[0] = table == VERTICES ? span[i] : 0.5 * (span[i] + span[i + 1]);
     if (table == MIDDLES) {
         bough_rod_place middle = bough_section_loads_place(x, i, 0.5);
-        bough_section_load load = bough_section_loads_at(x, &middle);
+        bough_wrench load = bough_section_loads_at(x, &middle);
         bough_mat3 axes = bough_section_loads_axes(x, &middle, &turn);
         bough_v3_store(bough_mat3_tmul(axes, load.force), value + 1);
         bough_v3_store(bough_mat3_tmul(axes, load.moment), value + 4);

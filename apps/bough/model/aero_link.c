@@ -31,12 +31,11 @@ static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) 
 }
 
 static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
-    const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
-    l->n_blade = turbine->n_blade;
+    l->n_blade = l->simulation->scene->turbine.n_blade;
     l->beam = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->beam);
     l->signal = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->signal);
     for (int b = 0; b < l->n_blade; b++) {
-        l->beam[b] = bough_simulation_beam(l->simulation, turbine->blade[b]);
+        l->beam[b] = bough_simulation_blade(l->simulation, b);
         BOUGH_TRY(same_mesh(l, l->beam[b]));
         l->signal[b] = bough_aero_signal_build(arena, l->simulation, l->beam[b]);
     }
@@ -159,8 +158,7 @@ static bough_status check_reach(bough_aero_link *l) {
     const bough_scene *scene = l->simulation->scene;
     const bough_wind *wind = bough_rotor_wind(l->rotor);
     double passes[2];
-    const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
-    bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
+    bough_vec3 hub = l->hub = bough_body_pose(l->simulation, scene->turbine.rotor).position;
     double radius = rotor_radius(&scene->aero);
     bough_wind_passes(wind, hub, passes);
     if (passes[0] > 1e-9 || passes[1] < wind->def.until * (1 - 1e-9))

@@ -47,23 +47,17 @@ bough_aero_course bough_aero_motion_course(const bough_aero_motion *m, int b) {
 
 // -- as it is -------------------------------------------------------------------------------------
 
-static bough_transform frame_of(const bough_aero_motion *m, int b) {
-    const bough_simulation *s = m->simulation;
-    return bough_tree_frame_pose(s->view, &s->tree->markers[m->beam[b]->marker]);
-}
-
 void bough_aero_motion_rotor(bough_aero_motion *m, double t) {
     bough_simulation *s = m->simulation;
-    const bough_scene_turbine *turbine = &s->scene->turbine;
+    int rotor = s->scene->turbine.rotor;
     bough_simulation_update(s);
-    bough_transform rotor = bough_tree_frame_pose(s->view, &s->tree->bodies[turbine->rotor]);
     m->found.time = t;
-    m->found.hub = rotor.position;
-    m->found.shaft = bough_simulation_joint_axis(s, turbine->rotor);
+    m->found.hub = bough_body_pose(s, rotor).position;
+    m->found.shaft = bough_simulation_joint_axis(s, rotor);
 }
 
 void bough_aero_motion_blade(bough_aero_motion *m, int b) {
-    m->moving[b].frame = frame_of(m, b);
+    m->moving[b].frame = bough_beam_pose(m->simulation, m->beam[b]);
     bough_simulation_beam_rows(m->simulation, m->beam[b], m->expected + b * m->n_state);
 }
 
@@ -89,9 +83,9 @@ static void enter(bough_aero_motion *m, int b) {
     for (int i = CALLS - 1; i > 0; i--) memcpy(m->state[i] + at, m->state[i - 1] + at, bytes);
     bough_simulation_beam_rows(s, m->beam[b], now);
     if (m->known > 1) same_sign(m->n_vertex, m->state[1] + at + rotation, now + rotation);
-    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[m->beam[b]->marker]), frame + TWIST);
+    bough_twist_store(bough_beam_twist(s, m->beam[b]), frame + TWIST);
     if (b > 0) return;
-    bough_transform pose = frame_of(m, b);
+    bough_transform pose = bough_beam_pose(s, m->beam[b]);
     bough_v3_store(bough_mat3_tmul(pose.rotation, bough_sub(m->found.hub, pose.position)), frame + HUB);
     bough_v3_store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
 }
@@ -117,7 +111,7 @@ static void expect(bough_aero_motion *m, int b) {
     }
     bough_vec3 turn = load(way + 3), half = bough_scale(0.5, turn);
     bough_mat3 middle = bough_rotation_matrix(bough_quaternion_exponential(half));
-    bough_transform now = frame_of(m, b);
+    bough_transform now = bough_beam_pose(m->simulation, m->beam[b]);
     bough_transform step = {bough_mat3_mul(middle, load(way)),
                             bough_rotation_matrix(bough_quaternion_exponential(turn))};
     m->moving[b].frame = bough_transform_compose(now, step);

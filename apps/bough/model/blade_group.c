@@ -39,7 +39,7 @@ static bool turns_about_shaft(const bough_simulation *s, int link, double length
     const bough_joint *joint = &s->tree->links[link].joint;
     const bough_transform *pose = &s->view->pose[link];
     bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor);
-    bough_vec3 centre = bough_tree_frame_pose(s->view, &s->tree->bodies[s->scene->turbine.rotor]).position;
+    bough_vec3 centre = bough_body_pose(s, s->scene->turbine.rotor).position;
     bough_vec3 tilted = bough_cross(bough_mat3_mul(pose->rotation, joint->axis), shaft);
     bough_vec3 off = bough_cross(bough_sub(pose->position, centre), shaft);
     return joint->kind == BOUGH_JOINT_REVOLUTE && bough_norm(tilted) < even &&
@@ -58,8 +58,8 @@ static bool is_on_shaft(const bough_simulation *s, int hub, double length) {
 static double pitch_between(const bough_simulation *s, const bough_beam *first, const bough_beam *blade,
                             double angle) {
     bough_vec3 turn = bough_scale(angle, bough_simulation_joint_axis(s, s->scene->turbine.rotor));
-    bough_mat3 p = bough_tree_frame_pose(s->view, &s->tree->markers[first->marker]).rotation;
-    bough_mat3 q = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation;
+    bough_mat3 p = bough_beam_pose(s, first).rotation;
+    bough_mat3 q = bough_beam_pose(s, blade).rotation;
     bough_mat3 moved = bough_rotation_matrix(bough_quaternion_exponential(turn));
     return bough_norm(bough_sub(q.c1, bough_mat3_mul(moved, p.c1)));
 }
@@ -84,7 +84,7 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
     group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
     group->first_input = bough_arena_take(arena, (size_t)n * sizeof *group->first_input);
-    for (int k = 0; k < n; k++) insert(s, bough_simulation_beam(s, turbine->blade[k]), group);
+    for (int k = 0; k < n; k++) insert(s, bough_simulation_blade(s, k), group);
     group->speed = spin_of(s, hub_of(s, group->blade[0]));
     bool alike = n >= 3;
     for (int k = 0; k < n; k++) alike = alike && is_alike(s, group, k);
@@ -96,10 +96,10 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->n_row = s->rod[group->blade[0]->port].system.n_state;
     group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
     for (int k = 0; k < n; k++) {
-        int member = group->blade[k]->port + 1, *row = group->row;
-        group->first[k] = s->assembly->state_offset[member];
-        group->first_input[k] = s->assembly->input_offset[member];
-        for (int j = 0; j < group->n_row; j++) row[k * group->n_row + j] = group->first[k] + j;
+        const bough_beam *blade = group->blade[k];
+        group->first[k] = bough_beam_row(s, blade);
+        group->first_input[k] = s->assembly->input_offset[blade->port + 1];
+        for (int j = 0; j < group->n_row; j++) group->row[k * group->n_row + j] = group->first[k] + j;
     }
     return bough_ok();
 }

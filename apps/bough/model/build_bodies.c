@@ -174,6 +174,7 @@ static bool moves_under_ground_loads(const bough_scene *scene, int body) {
 static bough_status add_beam(bough_builder *b, int index) {
     bough_simulation *s = b->s;
     bough_beam *beam = &s->beam[s->n_beam];
+    beam->index = index;
     beam->body = &b->scene->body[index];
     beam->port = beam->end = -1;
     BOUGH_TRY(discretise(b, beam));

@@ -241,7 +241,7 @@ void bough_control_link_put(bough_control_link *link, double torque, double pitc
 
 // Moments of a blade at its root, for bending out of the plane of rotation and in it.
 static void root_moments(const bough_control_link *l, int b, double t, double *out, double *in) {
-    const bough_beam *beam = bough_simulation_beam(l->simulation, blade_body(l, b));
+    const bough_beam *beam = bough_simulation_blade(l->simulation, b);
     double root[BOUGH_ROD_MOST_OUTPUTS], pitch = bough_simulation_pitch(l->simulation, beam);
     bough_simulation_root(l->simulation, beam, t, root);
     *out = root[4] * cos(pitch) - root[3] * sin(pitch);
@@ -308,8 +308,7 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
                              .electrical_power = electrical_power(l->control, speed, l->now.torque),
                              .wind = hub_wind(s),
                              .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
-    for (int b = 0; b < l->n_blade; b++)
-        x.pitch[b] = bough_simulation_pitch(s, bough_simulation_beam(s, blade_body(l, b)));
+    for (int b = 0; b < l->n_blade; b++) x.pitch[b] = bough_simulation_pitch(s, bough_simulation_blade(s, b));
     if (l->discon == NULL) return x;
     bough_simulation_accelerate(s, t);
     for (int b = 0; b < l->n_blade; b++) root_moments(l, b, t, &x.root_moment[b], &x.in_plane[b]);

@@ -24,15 +24,14 @@ static double length_of(const bough_beam *tower, int i) {
 
 static void sample_tower(bough_drag_link *l, double t, double factor) {
     bough_simulation *s = l->simulation;
-    const bough_frame *frame = &s->tree->markers[l->tower->marker];
-    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_mat3 axes = bough_beam_pose(s, l->tower).rotation;
     int n = l->n_vertex;
     bough_simulation_beam_motion(s, l->tower, l->vertex);
     if (l->tower->port < 0) memset(l->fresh, 0, 6 * sizeof *l->fresh);
     for (int i = 0; i < n; i++) {
         const bough_vertex_motion *v = &l->vertex[i];
         bough_vec3 f = bough_rotor_tower_drag(l->rotor, v->position, v->rotation.c3, v->velocity, t);
-        f = bough_mat3_tmul(pose.rotation, bough_scale(factor * length_of(l->tower, i), f));
+        f = bough_mat3_tmul(axes, bough_scale(factor * length_of(l->tower, i), f));
         if (l->tower->port >= 0) {
             l->fresh[i] = f.x, l->fresh[n + i] = f.y, l->fresh[2 * n + i] = f.z;
             continue;

@@ -59,14 +59,13 @@ static int largest_row(bough_arena *arena, const bough_equilibrium_search *x, co
 static double *take_motion(bough_arena *arena, const bough_equilibrium_search *x,
                            const bough_eigen_pair *pair) {
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->simulation->assembly;
-    size_t n = (size_t)a->n_state, speeds = (size_t)s->tree->n_v * sizeof(double);
+    size_t n = (size_t)s->assembly->n_state, speeds = (size_t)s->tree->n_v * sizeof(double);
     double *motion = bough_arena_copy(arena, x->state, n * sizeof *motion);
     memcpy(motion + s->tree->n_q, pair->shape_real + s->tree->n_q, speeds);
     for (int k = 0; k < s->n_beam; k++) {
         if (!s->beam[k].rod) continue;
         int vertices = s->beam[k].mesh->n;
-        size_t first = (size_t)(a->state_offset[s->beam[k].port + 1] + BOUGH_ROD_U * vertices);
+        size_t first = (size_t)(bough_beam_row(s, &s->beam[k]) + BOUGH_ROD_U * vertices);
         size_t size = (size_t)((BOUGH_ROD_STATES - BOUGH_ROD_U) * vertices) * sizeof *motion;
         memcpy(motion + first, pair->shape_real + first, size);
     }
@@ -76,20 +75,18 @@ static double *take_motion(bough_arena *arena, const bough_equilibrium_search *x
 // Twice the kinetic energy of its sections' rotation about the rod's axis.
 static double twist_energy(const bough_equilibrium_search *x, const bough_beam *beam, const double *motion) {
     int n = beam->mesh->n;
-    const double *w = motion + x->simulation->assembly->state_offset[beam->port + 1] +
-                      (size_t)(BOUGH_ROD_W + 2) * (size_t)n;
+    const double *w = motion + bough_beam_row(x->simulation, beam) + (size_t)(BOUGH_ROD_W + 2) * (size_t)n;
     double sum = 0;
     for (int i = 0; i < n; i++) sum += beam->mesh->vertex[i + 1].inertia[2] * w[i] * w[i];
     return sum;
 }
 
 static double twist_reserve(bough_arena *arena, const bough_equilibrium_search *x, const bough_beam *beam) {
-    const bough_assembly *a = x->simulation->assembly;
-    int member = beam->port + 1;
+    const bough_simulation *s = x->simulation;
+    const double *input = x->whole->input + s->assembly->input_offset[beam->port + 1];
     bough_rod_scratch scratch;
     bough_rod_scratch_init(&scratch, arena, beam->mesh);
-    bough_rod_gather(beam->mesh, x->state + a->state_offset[member],
-                     x->whole->input + a->input_offset[member], &scratch);
+    bough_rod_gather(beam->mesh, x->state + bough_beam_row(s, beam), input, &scratch);
     bough_rod_load(beam->mesh, bough_rod_body_loads(beam->rod), x->time, &scratch);
     return bough_rod_twist_reserve(beam->mesh, &scratch);
 }

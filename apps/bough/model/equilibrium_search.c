@@ -155,14 +155,13 @@ static bough_status balance_in_air(bough_arena *arena, bough_equilibrium_search 
 double bough_equilibrium_search_move(void *self, const double *state, const double *change, double *moved) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = s->assembly;
     double turn = 0;
-    for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
+    for (int k = 0; k < s->assembly->n_state; k++) moved[k] = state[k] + change[k];
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
         const bough_rod_model *m = beam->mesh;
-        size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
+        size_t own = (size_t)bough_beam_row(s, beam), size = BOUGH_ROD_U * (size_t)m->n;
         size_t end = 0; // not read of a rod that carries nothing
         if (beam->end >= 0) {
             int link = s->tree->ends[beam->end].link;
@@ -183,7 +182,6 @@ double bough_equilibrium_search_move(void *self, const double *state, const doub
 void bough_equilibrium_search_rest(void *self, double *state) {
     const bough_equilibrium_search *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = s->assembly;
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
@@ -193,10 +191,9 @@ void bough_equilibrium_search_rest(void *self, double *state) {
     bough_whole_inputs(x->whole, x->time, state);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        int member = beam->port + 1;
         if (beam->port < 0) continue;
-        bough_beam_move_rigidly(beam, x->whole->input + a->input_offset[member],
-                                state + a->state_offset[member]);
+        const double *input = x->whole->input + s->assembly->input_offset[beam->port + 1];
+        bough_beam_move_rigidly(beam, input, state + bough_beam_row(s, beam));
     }
 }
 
@@ -213,7 +210,7 @@ double bough_equilibrium_search_kinetic(void *self, const double *state) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
-        const double *own = state + s->assembly->state_offset[beam->port + 1];
+        const double *own = state + bough_beam_row(s, beam);
         sum += bough_rod_energy(beam->mesh, own, own + (size_t)BOUGH_ROD_U * (size_t)beam->mesh->n);
     }
     return sum;

@@ -139,7 +139,7 @@ bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, double
     scale_links(s->tree, unit, scale);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        if (beam->rod) scale_rod(beam->mesh->n, unit, scale + s->assembly->state_offset[beam->port + 1]);
+        if (beam->rod) scale_rod(beam->mesh->n, unit, scale + bough_beam_row(s, beam));
     }
     return unit;
 }

@@ -19,7 +19,7 @@ static void resolve(const bough_simulation *s, const bough_beam *beam, const bou
                     const double given[6], double wrench[6]) {
     bough_wrench w = bough_wrench_load(given);
     if (load->frame == BOUGH_SCENE_LOAD_GROUND) {
-        bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+        bough_mat3 r = bough_beam_pose(s, beam).rotation;
         w = (bough_wrench){bough_mat3_tmul(r, w.force), bough_mat3_tmul(r, w.moment)};
     }
     bough_wrench_store(w, wrench);

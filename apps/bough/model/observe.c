@@ -42,33 +42,24 @@ static int n_recorded(const bough_scene *scene, int body) {
     return rotor ? 0 : joint_channels[scene->body[body].joint.kind].n;
 }
 
-// q̇ of a joint with axes, which are its speeds except for a planar joint.
-static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
-    int coordinate, speed;
-    bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
-    const double *v = s->leader.state + speed;
-    int n = joint_channels[s->scene->body[body].joint.kind].n;
-    if (s->scene->body[body].joint.kind == BOUGH_JOINT_PLANAR) {
-        bough_joint_rate(&s->tree->links[s->tree->bodies[body].link].joint, q, v, rate);
-    } else {
-        memcpy(rate, v, (size_t)n * sizeof *v);
-    }
-}
-
 static void sample_joints(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
     for (int i = 0; i < s->scene->n_body; i++) {
         int n = n_recorded(s->scene, i), coordinate, speed;
         if (n == 0) continue;
-        double rate[3];
         bough_tree_joint_rows(s->tree, i, &coordinate, &speed);
-        const double *q = s->leader.state + coordinate;
-        joint_rates(s, i, q, rate);
+        int kind = s->scene->body[i].joint.kind;
+        double rate[3];
+        const double *q = s->leader.state + coordinate, *v = s->leader.state + speed;
+        memcpy(rate, v, (size_t)n * sizeof *v);
+        // only of a planar joint the speeds, in the body's axes, are not the rates of the coordinates
+        if (kind == BOUGH_JOINT_PLANAR)
+            bough_joint_rate(&s->tree->links[s->tree->bodies[i].link].joint, q, v, rate);
         for (int k = 0; k < n; k++, value += 2) {
-            bool angle = joint_channels[s->scene->body[i].joint.kind].angle[k];
-            value[0] = q[k] / (angle ? BOUGH_DEGREE : 1);
-            value[1] = rate[k] / (angle ? BOUGH_DEGREE : 1);
+            double unit = joint_channels[kind].angle[k] ? BOUGH_DEGREE : 1;
+            value[0] = q[k] / unit;
+            value[1] = rate[k] / unit;
         }
     }
 }
@@ -211,7 +202,7 @@ static void sample_blades(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_simulation_accelerate(s, t);
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        const bough_beam *beam = bough_simulation_blade(s, b);
         double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
@@ -241,9 +232,7 @@ static void find_tower(bough_simulation *s) {
 
 // The section of the top in the frame of the foot; `tip`: the section in its body's frame.
 static bough_transform top_at_foot(const bough_simulation *s, bough_transform tip) {
-    const bough_frame *markers = s->tree->markers;
-    bough_transform foot = bough_tree_frame_pose(s->view, &markers[s->tower_foot->marker]);
-    bough_transform top = bough_tree_frame_pose(s->view, &markers[s->tower_top->marker]);
+    bough_transform foot = bough_beam_pose(s, s->tower_foot), top = bough_beam_pose(s, s->tower_top);
     return bough_transform_compose(bough_transform_inverse(foot), bough_transform_compose(top, tip));
 }
 
@@ -273,8 +262,8 @@ static void add_tower(bough_simulation *s, bough_channels *list) {
     bough_channel_group_add(list, sample_tower, s, BOUGH_CHANNELS_TOWER);
 }
 
-static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
-    return bough_scene_blade(scene, (int)(body - scene->body)) >= 0;
+static bool is_blade(const bough_simulation *s, const bough_beam *beam) {
+    return bough_scene_blade(s->scene, beam->index) >= 0;
 }
 
 // Positions of the tips of rods other than blades, in ground axes.
@@ -283,8 +272,8 @@ static void sample_tips(void *self, double t, double *value) {
     const bough_simulation *s = self;
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        if (is_blade(s->scene, beam->body)) continue;
-        bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+        if (is_blade(s, beam)) continue;
+        bough_transform pose = bough_beam_pose(s, beam);
         bough_vec3 d, turn;
         bough_simulation_shift(s, beam, beam->def.n_segment, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
@@ -294,7 +283,7 @@ static void sample_tips(void *self, double t, double *value) {
 }
 
 static const char *name_tip(const bough_simulation *s, int k) {
-    return is_blade(s->scene, s->beam[k].body) ? NULL : s->beam[k].body->name;
+    return is_blade(s, &s->beam[k]) ? NULL : s->beam[k].body->name;
 }
 
 // -- aerodynamics ---------------------------------------------------------------------------------
@@ -320,8 +309,7 @@ static void sample_aero(void *self, double t, double *value) {
 // of the wind with the tower's influence relative to the blades, in the hub's.
 static void sample_wind(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
-    bough_mat3 axes = bough_tree_frame_pose(s->view, rotor).rotation;
+    bough_mat3 axes = bough_body_pose(s, s->scene->turbine.rotor).rotation;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
     const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
@@ -389,7 +377,7 @@ static void sample_control(void *self, double t, double *value) {
     value[1] = generator.torque / 1e3;
     value[2] = generator.power / 1e3;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        const bough_beam *blade = bough_simulation_blade(s, b);
         value[3 + b] = bough_simulation_pitch(s, blade) / BOUGH_DEGREE;
     }
 }
@@ -401,7 +389,7 @@ static void sample_law(void *self, double t, double *value) {
     double speed = bough_simulation_joint_point(s, s->scene->turbine.rotor).v;
     value[0] = s->scene->control.gear_ratio * speed;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        value[1 + b] = bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[b]));
+        value[1 + b] = bough_simulation_pitch(s, bough_simulation_blade(s, b));
     }
 }
 

@@ -28,7 +28,7 @@ static bough_vec3 vertex_slope(const sensor *x, int i) {
 static void sample_place(const sensor *x, const bough_rod_place *at, double *value) {
     int left = at->segment, right = left + 1;
     const double *span = x->loads.beam->def.span;
-    bough_section_load load = bough_section_loads_at(&x->loads, at);
+    bough_wrench load = bough_section_loads_at(&x->loads, at);
     double bow = at->fraction * (at->fraction - 1) / 2 * (span[right] - span[left]);
     bough_vec3 shift = bough_between(vertex_shift(x, left), vertex_shift(x, right), at->fraction), turn;
     shift = bough_axpy(bow, bough_sub(vertex_slope(x, right), vertex_slope(x, left)), shift);
@@ -56,7 +56,7 @@ static bough_rod_place find_place(const bough_section_loads *x, double span) {
 
 // Blades and a tower of one rod have OpenFAST's names.
 static void add_place(const bough_simulation *s, const bough_beam *beam, int number, bough_channels *list) {
-    int blade = bough_scene_blade(s->scene, (int)(beam->body - s->scene->body));
+    int blade = bough_scene_blade(s->scene, beam->index);
     char b[12], a[12];
     snprintf(b, sizeof b, "%d", number);
     if (blade >= 0) {

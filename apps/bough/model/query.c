@@ -11,8 +11,7 @@ void bough_simulation_update(bough_simulation *s) {
     *s->accelerated = (double)NAN;
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].ground == NULL) continue;
-        const bough_frame *frame = &s->tree->markers[s->beam[k].marker];
-        bough_mat3 e = bough_mat3_transpose(bough_tree_frame_pose(s->view, frame).rotation);
+        bough_mat3 e = bough_mat3_transpose(bough_beam_pose(s, &s->beam[k]).rotation);
         const double axes[BOUGH_GROUND_AXES] = {e.c1.x, e.c1.y, e.c1.z, e.c2.x, e.c2.y,
                                                 e.c2.z, e.c3.x, e.c3.y, e.c3.z};
         bough_ground_body_turn(s->beam[k].ground, axes);
@@ -40,14 +39,14 @@ bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_joint *joint = &beam->body->joint;
     if (joint->kind != BOUGH_JOINT_REVOLUTE || joint->axis != 2) return beam->body->pitch;
-    return beam->body->pitch - bough_simulation_joint_point(s, (int)(beam->body - s->scene->body)).q;
+    return beam->body->pitch - bough_simulation_joint_point(s, beam->index).q;
 }
 
 const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {
     const double *state = s->rod[beam->port].state;
     if (beam->rod != NULL) return state;
     double input[BOUGH_ROD_INPUTS] = {0}; // gravity does not matter
-    bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]), input);
+    bough_twist_store(bough_beam_twist(s, beam), input);
     return bough_modal_body_vertices(beam->modal, state, input, first);
 }
 
@@ -60,7 +59,7 @@ void bough_beam_move_rigidly(const bough_beam *beam, const double *input, double
 }
 
 bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body) {
-    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[body]).rotation;
+    bough_mat3 r = bough_body_pose(s, body).rotation;
     int axis = s->scene->body[body].joint.axis;
     return axis == BOUGH_SCENE_X ? r.c1 : axis == BOUGH_SCENE_Y ? r.c2 : r.c3;
 }
@@ -68,11 +67,11 @@ bough_vec3 bough_simulation_joint_axis(const bough_simulation *s, int body) {
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
     const bough_scene *scene = s->scene;
     int body = scene->turbine.rotor;
-    bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    bough_transform hub = bough_body_pose(s, body);
     bough_rotor_place r = {hub.position, bough_simulation_joint_axis(s, body), 0};
     for (int k = 0; k < scene->turbine.n_blade; k++) {
-        const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
-        bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
+        const bough_beam *blade = bough_simulation_blade(s, k);
+        bough_transform root = bough_beam_pose(s, blade);
         bough_vec3 tip = blade->def.position[blade->def.n_segment];
         tip = bough_sub(bough_add(root.position, bough_mat3_mul(root.rotation, tip)), r.hub);
         tip = bough_sub(tip, bough_scale(bough_dot(tip, r.axis), r.axis));
@@ -85,7 +84,7 @@ double bough_simulation_azimuth(const bough_simulation *s, const bough_beam *bla
     bough_vec3 shaft = bough_simulation_joint_axis(s, s->scene->turbine.rotor), zero = bough_v3(0, 0, 1);
     if (fabs(shaft.z) > 0.9) zero = bough_v3(1, 0, 0);
     zero = bough_axpy(-bough_dot(zero, shaft), shaft, zero);
-    bough_vec3 span = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation.c3;
+    bough_vec3 span = bough_beam_pose(s, blade).rotation.c3;
     return atan2(bough_dot(span, bough_cross(shaft, zero)), bough_dot(span, zero));
 }
 
@@ -134,7 +133,7 @@ static bool stands_alone(const bough_scene *scene, int body) {
 
 // Inertia and weight less the load of the air.
 static void rigid_root(const bough_simulation *s, const bough_beam *beam, double t, double *root) {
-    if (!stands_alone(s->scene, (int)(beam->body - s->scene->body))) return;
+    if (!stands_alone(s->scene, beam->index)) return;
     bough_wrench air = bough_tree_wrench(s->tree, beam->marker, t);
     bough_wrench inertial = inertial_wrench(s, &s->tree->markers[beam->marker], &beam->vertex[0]);
     bough_wrench_store(bough_wrench_sub(air, inertial), root);
@@ -255,9 +254,8 @@ size_t bough_simulation_most_vertices(const bough_simulation *s) {
 }
 
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam, vertex *moving) {
-    const bough_frame *frame = &s->tree->markers[beam->marker];
-    bough_transform pose = bough_tree_frame_pose(s->view, frame);
-    bough_twist twist = bough_tree_frame_twist(s->view, frame);
+    bough_transform pose = bough_beam_pose(s, beam);
+    bough_twist twist = bough_beam_twist(s, beam);
     const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
     for (int i = 0; i <= beam->def.n_segment; i++) {
         vertex v = vertex_of(s, beam, state, i, twist);
@@ -278,7 +276,7 @@ static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows)
 // The inner vertices of a flexible beam are in its state as they are; the root, the end of a rod
 // that carries bodies and a rigid beam's vertices one by one.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
-    bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
+    bough_twist twist = bough_beam_twist(s, beam);
     const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
     int n = beam->def.n_segment + 1, inner = state ? beam->mesh->n : 0;
     for (int c = 0; state && c < BOUGH_BLADE_ROWS; c++)

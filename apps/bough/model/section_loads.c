@@ -38,7 +38,7 @@ static bough_vec3 step_between(const bough_section_loads *x, int i) {
 
 // The moments of a segment, linear over its length, at its two vertices, in the body's axes [N m].
 static void linear_moments(const bough_section_loads *x, int i, bough_vec3 moment[2]) {
-    const bough_section_load *lack = &x->lack[i];
+    const bough_wrench *lack = &x->lack[i];
     bough_vec3 left = bough_mat3_mul(vertex_axes(x, i), segment_row(x, i, 3));
     bough_vec3 right = bough_mat3_mul(vertex_axes(x, i + 1), segment_row(x, i, 6));
     moment[0] = bough_add(left, lack->moment);
@@ -90,7 +90,7 @@ bough_rod_place bough_section_loads_end(const bough_section_loads *x, int segmen
 
 // theory (121): what inertia and weight within a segment add, at a place, to the constant force and the
 // linear moment that balance the masses at its vertices.
-static bough_section_load inertia_load(const bough_section_loads *x, const bough_rod_place *p) {
+static bough_wrench inertia_load(const bough_section_loads *x, const bough_rod_place *p) {
     int i = p->segment;
     const bough_axial_mass *at_vertex = &x->beam->mesh->vertex[i].outer;
     double from = x->beam->def.span[i], distance = p->fraction * segment_length(x, i);
@@ -101,32 +101,32 @@ static bough_section_load inertia_load(const bough_section_loads *x, const bough
     bough_vec3 a = bough_axpy(from - x->centre[i], slope, x->acceleration[i]);
     bough_vec3 arm = bough_scale(moment - distance * mass, a);
     arm = bough_axpy(second - distance * moment, slope, arm);
-    return (bough_section_load){bough_axpy(moment, slope, bough_scale(mass, a)),
-                                bough_add(bough_cross(chord(x, i), arm), bough_cross(offset, a))};
+    return (bough_wrench){bough_axpy(moment, slope, bough_scale(mass, a)),
+                          bough_add(bough_cross(chord(x, i), arm), bough_cross(offset, a))};
 }
 
 // Load k at a place on segment i, in the body's axes: the whole of a concentrated one, else per length.
-static bough_section_load value_at(const bough_section_loads *x, int k, int i, double place) {
+static bough_wrench value_at(const bough_section_loads *x, int k, int i, double place) {
     const bough_scene_load *l = x->load[k].of;
     bough_rod_reach reach = x->load[k].reach;
     double part = reach.to > reach.from ? (place - reach.from) / (reach.to - reach.from) : 0, w[6];
     for (int c = 0; c < 6; c++) w[c] = x->load[k].factor * (l->wrench[c] + part * (l->end[c] - l->wrench[c]));
-    bough_section_load value = {bough_v3_load(w), bough_v3_load(w + 3)};
+    bough_wrench value = bough_wrench_load(w);
     if (l->frame == BOUGH_SCENE_LOAD_BODY) return value;
     double fraction = (place - x->beam->def.span[i]) / segment_length(x, i);
     bough_mat3 axes = l->frame == BOUGH_SCENE_LOAD_GROUND ? x->ground : axes_at(x, i, fraction);
-    return (bough_section_load){bough_mat3_mul(axes, value.force), bough_mat3_mul(axes, value.moment)};
+    return (bough_wrench){bough_mat3_mul(axes, value.force), bough_mat3_mul(axes, value.moment)};
 }
 
 // What load k, from one place to another on segment i, adds to the load in the section at s: by its part that
 // the left vertex has, or because it lies before s.
 static void add_part(const bough_section_loads *x, int k, int i, bough_rod_reach part, double s,
-                     bool at_vertex, bough_section_load *sum) {
+                     bool at_vertex, bough_wrench *sum) {
     double h = segment_length(x, i), from = x->beam->def.span[i], half = 0.5 * (part.to - part.from);
     for (int p = 0; p < (half > 0 ? 2 : 1); p++) { // Gauss's points, exact to degree 3
         double place = half > 0 ? part.from + half * (1 + (2 * p - 1) / sqrt(3)) : part.from;
         double weight = (half > 0 ? half : 1) * (at_vertex ? 1 - (place - from) / h : -1);
-        bough_section_load value = value_at(x, k, i, place);
+        bough_wrench value = value_at(x, k, i, place);
         bough_vec3 arm = bough_scale(at_vertex ? s - from : s - place, chord(x, i));
         value.moment = bough_sub(value.moment, bough_cross(arm, value.force));
         sum->force = bough_axpy(weight, value.force, sum->force);
@@ -136,11 +136,11 @@ static void add_part(const bough_section_loads *x, int k, int i, bough_rod_reach
 
 // theory (106, 121): the same by inertia and by the scene's loads; a concentrated one at the section's own
 // place is part of its load.
-static bough_section_load within(const bough_section_loads *x, const bough_rod_place *p) {
+static bough_wrench within(const bough_section_loads *x, const bough_rod_place *p) {
     int i = p->segment;
     const double *span = x->beam->def.span;
     double s = p->fraction == 1 ? span[i + 1] : span[i] + p->fraction * segment_length(x, i);
-    bough_section_load sum = inertia_load(x, p);
+    bough_wrench sum = inertia_load(x, p);
     for (int k = 0; k < x->n_load; k++) {
         bough_rod_reach part = x->load[k].reach;
         bool point = part.from == part.to, last = i == x->beam->def.n_segment - 1;
@@ -156,10 +156,10 @@ static bough_section_load within(const bough_section_loads *x, const bough_rod_p
 }
 
 // Force and moment of the segment itself on its bowed axis, and of what is known to act within it.
-static bough_section_load known_load(const bough_section_loads *x, const bough_rod_place *p) {
+static bough_wrench known_load(const bough_section_loads *x, const bough_rod_place *p) {
     int i = p->segment;
     double fraction = p->fraction;
-    bough_section_load load = within(x, p);
+    bough_wrench load = within(x, p);
     bough_vec3 linear[2], bend = bough_sub(vertex_axes(x, i + 1).c3, vertex_axes(x, i).c3);
     linear_moments(x, i, linear);
     load.force = bough_add(load.force, segment_force(x, i));
@@ -169,29 +169,29 @@ static bough_section_load known_load(const bough_section_loads *x, const bough_r
     return load;
 }
 
-static bough_section_load known_at_end(const bough_section_loads *x, int i, bool right) {
+static bough_wrench known_at_end(const bough_section_loads *x, int i, bool right) {
     bough_rod_place end = bough_section_loads_end(x, i, right);
     return known_load(x, &end);
 }
 
 // -- what acts on the vertices --------------------------------------------------------------------
 
-static bough_section_load mix(double a, bough_section_load x, double b, bough_section_load y) {
-    return (bough_section_load){bough_axpy(a, x.force, bough_scale(b, y.force)),
-                                bough_axpy(a, x.moment, bough_scale(b, y.moment))};
+static bough_wrench mix(double a, bough_wrench x, double b, bough_wrench y) {
+    return (bough_wrench){bough_axpy(a, x.force, bough_scale(b, y.force)),
+                          bough_axpy(a, x.moment, bough_scale(b, y.moment))};
 }
 
 // theory (119): what a vertex carries beyond the known, as a load per length there: the air, and inertia of
 // sections that turn.
-static bough_section_load jump_at(const bough_section_loads *x, int j) {
+static bough_wrench jump_at(const bough_section_loads *x, int j) {
     int n = x->beam->def.n_segment;
-    bough_section_load inner = j > 0 ? known_at_end(x, j - 1, true) : x->root;
-    bough_section_load outer = j < n ? known_at_end(x, j, false) : x->end;
+    bough_wrench inner = j > 0 ? known_at_end(x, j - 1, true) : x->root;
+    bough_wrench outer = j < n ? known_at_end(x, j, false) : x->end;
     double length = (j > 0 ? segment_length(x, j - 1) : 0) + (j < n ? segment_length(x, j) : 0);
     return mix(2 / length, inner, -2 / length, outer);
 }
 
-static bough_section_load spread_at(const bough_section_loads *x, int j) {
+static bough_wrench spread_at(const bough_section_loads *x, int j) {
     int n = x->beam->def.n_segment;
     if (j > 0 && j < n) return jump_at(x, j);
     double own = n > 1 ? 1.5 : 2;
@@ -199,12 +199,12 @@ static bough_section_load spread_at(const bough_section_loads *x, int j) {
 }
 
 // theory (118)
-bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place) {
+bough_wrench bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place) {
     int i = place->segment;
     double f = place->fraction, h = segment_length(x, i);
     double left = f * (f * f / 6 - f / 2 + 1. / 3), right = f * (1 - f * f) / 6;
-    bough_section_load a = spread_at(x, i), b = spread_at(x, i + 1);
-    bough_section_load more = mix(h * (1. / 3 - f + f * f / 2), a, h * (1. / 6 - f * f / 2), b);
+    bough_wrench a = spread_at(x, i), b = spread_at(x, i + 1);
+    bough_wrench more = mix(h * (1. / 3 - f + f * f / 2), a, h * (1. / 6 - f * f / 2), b);
     bough_vec3 arm = bough_axpy(left, a.force, bough_scale(right, b.force));
     more.moment = bough_axpy(-h * h, bough_cross(chord(x, i), arm), more.moment);
     return mix(1, known_load(x, place), 1, more);
@@ -256,7 +256,7 @@ static bough_vec3 acceleration_of(const bough_section_loads *x, int i) {
 // theory (120)
 static void find_lack(bough_section_loads *x) {
     const bough_rod_model *m = x->beam->mesh;
-    bough_section_load sum = {{0, 0, 0}, {0, 0, 0}};
+    bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
     for (int i = m->n_segment; i > 0; i--) {
         const bough_vertex_inertia *vertex = &m->vertex[i];
         bough_vec3 slope = acceleration_slope(x, i - 1);
@@ -271,18 +271,13 @@ static void find_lack(bough_section_loads *x) {
 
 // The scene's loads at t; those at the tip are part of the load there.
 static void set_scene_loads(bough_section_loads *x, double t) {
-    const bough_simulation *s = x->simulation;
-    const bough_beam *beam = x->beam;
-    const bough_rod_model *m = beam->mesh;
+    const bough_rod_model *m = x->beam->mesh;
     double tip = m->span[m->n_segment];
-    bough_mat3 frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
-    x->ground = bough_mat3_transpose(frame);
+    x->ground = bough_mat3_transpose(bough_beam_pose(x->simulation, x->beam).rotation);
     for (int k = 0; k < x->n_load; k++) {
         x->load[k].factor = bough_schedule_at(x->load[k].schedule, t);
-        if (x->load[k].reach.from != tip) continue;
-        bough_section_load at_tip = value_at(x, k, m->n_segment - 1, tip);
-        x->end.force = bough_add(x->end.force, at_tip.force);
-        x->end.moment = bough_add(x->end.moment, at_tip.moment);
+        if (x->load[k].reach.from == tip)
+            x->end = bough_wrench_add(x->end, value_at(x, k, m->n_segment - 1, tip));
     }
 }
 
@@ -293,11 +288,11 @@ static void find_ends(bough_section_loads *x, double t) {
     bough_simulation_accelerate(x->simulation, t);
     bough_simulation_root(x->simulation, beam, t, w);
     bough_vec3 root = bough_v3_load(w), arm = bough_cross(beam->def.position[0], root);
-    x->root = (bough_section_load){root, bough_sub(bough_v3_load(w + 3), arm)};
-    x->end = (bough_section_load){{0, 0, 0}, {0, 0, 0}};
+    x->root = (bough_wrench){root, bough_sub(bough_v3_load(w + 3), arm)};
+    x->end = (bough_wrench){{0, 0, 0}, {0, 0, 0}};
     if (beam->end < 0) return;
     bough_vec3 moment = bough_mat3_mul(vertex_axes(x, beam->mesh->n_segment), bough_v3_load(w + 9));
-    x->end = (bough_section_load){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
+    x->end = (bough_wrench){bough_v3(-w[6], -w[7], -w[8]), bough_scale(-1, moment)};
 }
 
 bool bough_section_loads_evaluate(bough_section_loads *x, double t) {

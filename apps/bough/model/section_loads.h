@@ -12,10 +12,6 @@ static inline bough_quaternion bough_rotation_between(bough_quaternion p, bough_
     return bough_quaternion_product(p, bough_quaternion_exponential(part));
 }
 
-typedef struct bough_section_load {
-    bough_vec3 force, moment; // of the outer part on the inner part [N], [N m]
-} bough_section_load;
-
 // A place on a rod: within a segment, at a fraction of its length.
 typedef struct bough_rod_place {
     int segment;
@@ -39,11 +35,11 @@ typedef struct bough_section_loads {
     bough_section_scene_load *load; // (n_load)
     bough_mat3 ground;              // from ground to the body's axes
     bough_rod_scratch scratch;      // vertices and segments at the evaluation
-    bough_section_load *lack;       // (n_segment) theory (120), at the left vertices, in the body's axes
+    bough_wrench *lack;             // (n_segment) theory (120), at the left vertices, in the body's axes
     bough_axial_mass *mass;         // (n_segment) of whole segments
     double *centre;                 // (n_segment + 1) arc length of the vertices' mass centres [m]
     bough_vec3 *acceleration;       // (n_segment + 1) a − g there, in the body's axes [m/s²]
-    bough_section_load root, end;   // in the body's axes; end: of bodies and loads on it
+    bough_wrench root, end;         // in the body's axes; end: of bodies and loads on it
 } bough_section_loads;
 
 // Of a body of fidelity rod.
@@ -58,8 +54,8 @@ bough_rod_place bough_section_loads_place(const bough_section_loads *x, int segm
 // The left or the right end of a segment, for loads alone.
 bough_rod_place bough_section_loads_end(const bough_section_loads *x, int segment, bool right);
 
-// Load of the section, in the body's axes.
-bough_section_load bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place);
+// Wrench of the outer part on the inner part at the section, in the body's axes.
+bough_wrench bough_section_loads_at(const bough_section_loads *x, const bough_rod_place *place);
 
 // The section's axes in the body's, and its rotation vector against the undeformed one.
 bough_mat3 bough_section_loads_axes(const bough_section_loads *x, const bough_rod_place *at,

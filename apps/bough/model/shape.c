@@ -20,9 +20,9 @@ static void rigid_line(const bough_simulation *s, int body, bough_vertex_motion 
     const bough_scene_body *from = &s->scene->body[body];
     const double *c = from->centre_of_mass;
     int parent = from->joint.parent;
-    bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    bough_transform own = bough_body_pose(s, body);
     x[0].position = x[1].position = own.position;
-    if (parent >= 0) x[0].position = bough_tree_frame_pose(s->view, &s->tree->bodies[parent]).position;
+    if (parent >= 0) x[0].position = bough_body_pose(s, parent).position;
     x[2].position = bough_add(own.position, bough_mat3_mul(own.rotation, bough_v3_load(c)));
 }
 
@@ -46,12 +46,12 @@ static void rod_loads(const bough_shape *shape, int body, double t, double *forc
     const bough_beam *beam = bough_simulation_beam(s, body);
     if (!beam || !beam->rod) return;
     bough_section_loads *loads = &shape->loads[body];
-    bough_mat3 frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+    bough_mat3 frame = bough_beam_pose(s, beam).rotation;
     if (!bough_section_loads_evaluate(loads, t)) return;
     for (int k = 0; k < shape->line[body].n_point; k++) {
         bool last = k == beam->def.n_segment;
         bough_rod_place vertex = bough_section_loads_end(loads, last ? k - 1 : k, last);
-        bough_section_load load = bough_section_loads_at(loads, &vertex);
+        bough_wrench load = bough_section_loads_at(loads, &vertex);
         bough_v3_store(bough_mat3_mul(frame, load.force), force + 3 * k);
         bough_v3_store(bough_mat3_mul(frame, load.moment), moment + 3 * k);
     }

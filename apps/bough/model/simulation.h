@@ -16,6 +16,7 @@ struct bough_validity;
 
 // A body with a rod, such as a blade, cable or tower, flexible or rigid.
 typedef struct bough_beam {
+    int index; // of the body in the scene
     const bough_scene_body *body;
     bough_rod_def def;           // the undeformed mesh in the body's frame
     int marker;                  // of the tree, the body's frame
@@ -85,8 +86,27 @@ void bough_simulation_put(const bough_simulation *s, int k, double value);
 // Number of bodies on joints that move.
 int bough_simulation_n_joints(const bough_simulation *s);
 
-// The beam of a scene body; NULL when it has no rod.
+// The beam of a scene body; NULL when it has no rod. That of blade k of the turbine.
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
+static inline bough_beam *bough_simulation_blade(const bough_simulation *s, int k) {
+    return bough_simulation_beam(s, s->scene->turbine.blade[k]);
+}
+
+// The frame of a scene body in ground axes, and that of a beam and its twist in its own axes, in `view`.
+static inline bough_transform bough_body_pose(const bough_simulation *s, int body) {
+    return bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+}
+static inline bough_transform bough_beam_pose(const bough_simulation *s, const bough_beam *beam) {
+    return bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+}
+static inline bough_twist bough_beam_twist(const bough_simulation *s, const bough_beam *beam) {
+    return bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
+}
+
+// The first of a flexible beam's states among those of all members.
+static inline int bough_beam_row(const bough_simulation *s, const bough_beam *beam) {
+    return s->assembly->state_offset[beam->port + 1];
+}
 
 // The input of a rod at the current synchronisation point: see rod.h.
 const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam);

@@ -91,7 +91,7 @@ static void pass(bough_validity *v, bough_limit limit, int body, double time, do
 
 // Notes that a beam passes a limit at the present time.
 static void pass_beam(bough_simulation *s, bough_limit limit, const bough_beam *beam, double value) {
-    pass(s->validity, limit, (int)(beam->body - s->scene->body), s->master->time, value);
+    pass(s->validity, limit, beam->index, s->master->time, value);
 }
 
 static void check_air(bough_simulation *s) {
@@ -247,7 +247,7 @@ static void check_elements(bough_simulation *s) {
 // -- at the start ---------------------------------------------------------------------------------
 
 static double azimuth(const bough_simulation *s, int blade) {
-    return bough_simulation_azimuth(s, bough_simulation_beam(s, s->scene->turbine.blade[blade]));
+    return bough_simulation_azimuth(s, bough_simulation_blade(s, blade));
 }
 
 // The narrowest gap between two blades [rad].
