@@ -38,6 +38,19 @@ bough_air_mean *bough_air_mean_create(bough_arena *arena, const bough_air_azimut
     return m;
 }
 
+void bough_air_mean_blend(const double *c, bool transposed, int n_part, int n, const int *row, double *x) {
+    double before[BOUGH_MOST_BLADES];
+    for (int j = 0; j < n; j++) {
+        for (int k = 0; k < n_part; k++) before[k] = x[row[k * n + j]];
+        for (int k = 0; k < n_part; k++) {
+            double sum = 0;
+            for (int l = 0; l < n_part; l++)
+                sum += c[transposed ? l * n_part + k : k * n_part + l] * before[l];
+            x[row[k * n + j]] = sum;
+        }
+    }
+}
+
 // State j of a blade among all and the air's.
 static size_t state_of(const bough_air_mean *m, int blade, int j) {
     return (size_t)m->row[blade * m->n_all + j];

@@ -205,7 +205,7 @@ static blades take_blades(bough_arena *arena, work *w, const bough_blade_group *
     b.at = bough_air_tangent_rows(arena, s, group, n_air);
     b.number = bough_arena_take(arena, parts * sizeof *b.number);
     for (int k = 0; k < group->n; k++) b.number[k] = bough_air_tangent_blade(s, group, k);
-    b.n_load = (size_t)bough_aero_link_loads_size(s->aero, b.number[0]);
+    b.n_load = (size_t)bough_aero_link_loads(s->aero, BOUGH_SNAPSHOT_MEASURE, b.number[0], NULL);
     bough_arena_each(arena, parts * b.n_load, &b.load[0], &b.load[1]);
     keep_loads(&b, 0);
     bough_assembly_scales(w->simulation->assembly, scale);
@@ -469,35 +469,54 @@ bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *
 
 struct bough_air_change {
     work w;
-    const double *about;
-    bool known; // the rates there are in w.rate[0]
+    bough_air_azimuth at;
+    int n_row;      // states of a blade with those of its air
+    const int *row; // (n_part × n_row)
+    int angle;      // the row of the rotor's; −1: it counts
+    double *change; // (n + n_air) as at this azimuth
+    bool known;     // the rates of its state are in w.rate[0]
 };
 
-bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *whole,
-                                          double time, const double *state, bool dynamic, int *n_air) {
+bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *at, bool dynamic,
+                                          int *n_air) {
+    bough_simulation *s = at->simulation;
     bough_air_change *x = bough_arena_take(arena, sizeof *x);
-    *x = (bough_air_change){start(arena, s, whole, time, dynamic), state, false};
-    settle(&x->w, state);
+    *x = (bough_air_change){.w = start(arena, s, at->whole, at->time, dynamic), .at = *at, .angle = -1};
+    settle(&x->w, at->state);
     *n_air = x->w.n_air;
+    int n_per_blade = *n_air / s->scene->turbine.n_blade, speed;
+    x->n_row = at->parts->n_row + n_per_blade;
+    x->row = bough_air_tangent_rows(arena, at->first, at->parts, n_per_blade);
+    x->change = bough_arena_doubles(arena, (size_t)(s->assembly->n_state + *n_air));
+    if (at->share < 1) bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &x->angle, &speed);
     return x;
 }
 
-// The rates with `factor` times a change.
-static bough_status change_by(bough_air_change *x, double factor, const double *change, int side) {
+static void blend(const bough_air_change *x, bool transposed, double *y) {
+    bough_air_mean_blend(x->at.blend, transposed, x->at.parts->n, x->n_row, x->row, y);
+}
+
+// The rates with `factor` times the change.
+static bough_status change_by(bough_air_change *x, double factor, int side) {
     work *w = &x->w;
     int n = w->simulation->assembly->n_state;
-    for (int k = 0; k < n; k++) w->state[k] = x->about[k] + factor * change[k];
+    for (int k = 0; k < n; k++) w->state[k] = x->at.state[k] + factor * x->change[k];
     memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
-    for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * change[n + k];
-    return find_rates(w, x->about, w->rate[side], w->air_rate[side]);
+    for (int k = 0; k < w->n_air; k++) w->before[w->row[k]] += factor * x->change[n + k];
+    return find_rates(w, x->at.state, w->rate[side], w->air_rate[side]);
 }
 
 bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_one_side, const double *change,
                                      double *image) {
+    size_t all = (size_t)(x->w.simulation->assembly->n_state + x->w.n_air);
+    memcpy(x->change, change, all * sizeof *change);
+    blend(x, false, x->change);
+    if (x->angle >= 0) x->change[x->angle] = 0;
     x->w.motion[0] = (double)NAN; // others may have moved the bodies
-    if (!to_one_side || !x->known) BOUGH_TRY(change_by(x, to_one_side ? 0 : -size, change, 0));
+    if (!to_one_side || !x->known) BOUGH_TRY(change_by(x, to_one_side ? 0 : -size, 0));
     x->known = to_one_side;
-    BOUGH_TRY(change_by(x, size, change, 1));
+    BOUGH_TRY(change_by(x, size, 1));
     set_column(&x->w, to_one_side ? size : 2 * size, image);
+    blend(x, true, image);
     return bough_ok();
 }

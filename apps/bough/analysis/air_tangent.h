@@ -58,12 +58,13 @@ bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *
 // The same for one change of bodies and air at once: the products that the matrices have with it.
 typedef struct bough_air_change bough_air_change;
 
-// Brings the air to rest about `state` (n), which is borrowed; *n_air: its states.
-bough_air_change *bough_air_change_create(bough_arena *arena, bough_simulation *s, bough_whole *whole,
-                                          double time, const double *state, bool dynamic, int *n_air);
+// Brings the air to rest about the state of one of a mean's azimuths; *n_air: its states.
+bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
+                                          int *n_air);
 
-// A y + R m and G y + H m into image (n + n_air), of change = y, m (n + n_air), by differences of `size`
-// times it, to both sides or, at half the cost, to one.
+// Cᵀ (A y + R m) and Cᵀ (G y + H m) into image (n + n_air), of C change = y, m (n + n_air), without the
+// rotor's angle where there are several azimuths, by differences of `size` times it, to both sides or, at
+// half the cost, to one.
 bough_status bough_air_change_follow(bough_air_change *x, double size, bool to_one_side, const double *change,
                                      double *image);
 
@@ -85,6 +86,9 @@ void bough_air_mean_add(const bough_air_mean *mean, int at, const double *slope,
 // by the state `column` of the row.
 void bough_air_mean_add_own(const bough_air_mean *mean, const int *column, const double *slope,
                             bough_air_tangent *tangent);
+
+// Entries of the blades, in n rows of each, by C or its transpose, in place: row (n_part × n).
+void bough_air_mean_blend(const double *blend, bool transposed, int n_part, int n, const int *row, double *x);
 
 // Switches the sign of what is added from now on.
 void bough_air_mean_negate(bough_air_mean *mean);

@@ -10,29 +10,7 @@ static const double difference = 1e-5; // of the largest entry of a vector in un
 
 static const double complex imaginary = (double complex)I;
 
-enum { AZIMUTHS = 4, MOST_BLADES = 16 };
-
-// -- blades seen by an observer at rest -----------------------------------------------------------
-
-// Rows of the states of equal blades, with or without those of their air: row (n_part × n).
-typedef struct blade_rows {
-    int n_part, n;
-    const int *row;
-} blade_rows;
-
-// Entries of the blades by C or its transpose, in place.
-static void blend(const double *c, bool transposed, blade_rows of, double *x) {
-    double before[MOST_BLADES];
-    for (int j = 0; j < of.n; j++) {
-        for (int k = 0; k < of.n_part; k++) before[k] = x[of.row[k * of.n + j]];
-        for (int k = 0; k < of.n_part; k++) {
-            double sum = 0;
-            for (int l = 0; l < of.n_part; l++)
-                sum += c[transposed ? l * of.n_part + k : k * of.n_part + l] * before[l];
-            x[of.row[k * of.n + j]] = sum;
-        }
-    }
-}
+enum { AZIMUTHS = 4 };
 
 // -- the azimuths ---------------------------------------------------------------------------------
 
@@ -71,7 +49,7 @@ static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double
     const bough_simulation *s = a->at[0].simulation;
     int azimuth, speed;
     bough_assembly_states(s->assembly, state);
-    blend(x->blend, false, (blade_rows){a->group->n, a->group->n_row, a->group->row}, state);
+    bough_air_mean_blend(x->blend, false, a->group->n, a->group->n_row, a->group->row, state);
     for (int k = 0; k < a->group->n; k++) { // quaternions of length 1
         const bough_system *system = &s->rod[a->group->blade[k]->port].system;
         if (system->ops->constrain) system->ops->constrain(system->self, time, state + a->group->first[k]);
@@ -109,8 +87,9 @@ static void set_mean(const bough_azimuths *a, double *state) {
 bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time, bool balanced,
                                  bough_vibration_point *point, bough_azimuths *a) {
     int n = point->group.n;
-    *a = (bough_azimuths){.n = n > 0 && n <= MOST_BLADES && fabs(point->group.speed) > at_rest ? AZIMUTHS : 1,
-                          .group = &point->group};
+    *a = (bough_azimuths){
+        .n = n > 0 && n <= BOUGH_MOST_BLADES && fabs(point->group.speed) > at_rest ? AZIMUTHS : 1,
+        .group = &point->group};
     a->at = bough_arena_take(arena, (size_t)a->n * sizeof *a->at);
     for (int k = 0; k < a->n; k++) {
         bough_azimuth *x = &a->at[k];
@@ -129,81 +108,44 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
 
 // -- the mean tangent -----------------------------------------------------------------------------
 
+bough_air_azimuth bough_azimuths_air(const bough_azimuths *a, int k) {
+    const bough_azimuth *x = &a->at[k];
+    const bough_vibration_point *p = &x->point;
+    return (bough_air_azimuth){.simulation = x->simulation,
+                               .whole = p->whole,
+                               .time = p->def.time,
+                               .state = p->state,
+                               .group = &p->group,
+                               .first = a->at[0].simulation,
+                               .parts = a->group,
+                               .blend = x->blend,
+                               .share = 1. / a->n};
+}
+
 bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bool dynamic,
                                     bough_air_tangent *mean) {
     bough_air_azimuth of;
     *mean = (bough_air_tangent){0};
     for (int k = 0; k < a->n; k++) {
-        const bough_azimuth *x = &a->at[k];
-        const bough_vibration_point *p = &x->point;
-        of = (bough_air_azimuth){.simulation = x->simulation,
-                                 .whole = p->whole,
-                                 .time = p->def.time,
-                                 .state = p->state,
-                                 .group = &p->group,
-                                 .first = a->at[0].simulation,
-                                 .parts = a->group,
-                                 .blend = x->blend,
-                                 .share = 1. / a->n};
+        of = bough_azimuths_air(a, k);
         BOUGH_TRY(bough_air_tangent_add(arena, &of, dynamic, NULL, mean));
     }
     bough_air_tangent_close(arena, &of, mean);
     return bough_ok();
 }
 
-// -- products with one azimuth --------------------------------------------------------------------
-
-struct bough_azimuth_product {
-    const double *blend; // C
-    bough_air_change *air;
-    blade_rows rows; // with those of the air
-    int n, n_air;    // states of the members, of the air
-    int angle;       // the row of the rotor's; −1: it counts
-    double *here;    // (n + n_air) a vector as at this azimuth
-};
-
-bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *a, int k,
-                                                    bool dynamic, int *n_air) {
-    const bough_azimuth *x = &a->at[k];
-    const bough_simulation *s = x->simulation;
-    const bough_vibration_point *point = &x->point;
-    bough_azimuth_product *p = bough_arena_take(arena, sizeof *p);
-    *p = (bough_azimuth_product){.blend = x->blend, .n = s->assembly->n_state, .angle = -1};
-    p->air = bough_air_change_create(arena, x->simulation, point->whole, point->def.time, point->state,
-                                     dynamic, &p->n_air);
-    int n_per_blade = p->n_air / s->scene->turbine.n_blade;
-    p->rows = (blade_rows){a->group->n, a->group->n_row + n_per_blade,
-                           bough_air_tangent_rows(arena, a->at[0].simulation, a->group, n_per_blade)};
-    p->here = bough_arena_doubles(arena, (size_t)(p->n + p->n_air));
-    int speed;
-    if (a->n > 1) bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &p->angle, &speed);
-    *n_air = p->n_air;
-    return p;
-}
-
-bough_status bough_azimuth_product_follow(bough_azimuth_product *p, double size, bool to_one_side,
-                                          const double *y, double *image) {
-    memcpy(p->here, y, (size_t)(p->n + p->n_air) * sizeof *y);
-    blend(p->blend, false, p->rows, p->here);
-    if (p->angle >= 0) p->here[p->angle] = 0;
-    BOUGH_TRY(bough_air_change_follow(p->air, size, to_one_side, p->here, image));
-    blend(p->blend, true, p->rows, image);
-    return bough_ok();
-}
-
 // -- changes with the azimuth ---------------------------------------------------------------------
 
-// yᵀ A x/(yᵀ x) of an eigenvector; scale (n + n_air), image: work.
-static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors *v, const double *scale,
-                             double *image, double complex *value) {
-    size_t all = (size_t)(p->n + p->n_air);
+// yᵀ A x/(yᵀ x) of an eigenvector; scale (all), image: work.
+static bough_status quotient(bough_air_change *air, size_t all, const bough_mode_vectors *v,
+                             const double *scale, double *image, double complex *value) {
     double complex length = 0, sum = 0;
     for (size_t part = 0; part < 2; part++) {
         const double *right = v->right + part * all;
         double complex unit = part == 0 ? 1 : imaginary;
         double largest = bough_largest((int)all, right, scale);
         if (largest == 0) continue;
-        BOUGH_TRY(bough_azimuth_product_follow(p, difference / largest, true, right, image));
+        BOUGH_TRY(bough_air_change_follow(air, difference / largest, true, right, image));
         for (size_t i = 0; i < all; i++) {
             double complex left = v->left[i] + imaginary * v->left[all + i];
             length += unit * left * right[i];
@@ -216,15 +158,18 @@ static bough_status quotient(bough_azimuth_product *p, const bough_mode_vectors 
 
 static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, int k, bool dynamic, int n,
                                    const bough_mode_vectors *vector, double complex *value) {
+    const bough_assembly *assembly = a->at[k].simulation->assembly;
+    bough_air_azimuth of = bough_azimuths_air(a, k);
     int n_air;
-    bough_azimuth_product *p = bough_azimuth_product_create(arena, a, k, dynamic, &n_air);
+    bough_air_change *air = bough_air_change_create(arena, &of, dynamic, &n_air);
+    size_t n_state = (size_t)assembly->n_state, all = n_state + (size_t)n_air;
     double *scale, *image;
-    bough_arena_each(arena, (size_t)(p->n + n_air), &scale, &image);
-    bough_assembly_scales(a->at[k].simulation->assembly, scale);
-    for (int i = 0; i < n_air; i++) scale[p->n + i] = 1;
+    bough_arena_each(arena, all, &scale, &image);
+    bough_assembly_scales(assembly, scale);
+    for (size_t i = n_state; i < all; i++) scale[i] = 1;
     for (int i = 0; i < n; i++) {
         value[i] = (double)NAN;
-        if (vector[i].left) BOUGH_TRY(quotient(p, &vector[i], scale, image, &value[i]));
+        if (vector[i].left) BOUGH_TRY(quotient(air, all, &vector[i], scale, image, &value[i]));
     }
     return bough_ok();
 }

@@ -34,13 +34,8 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
 bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic,
                                     bough_air_tangent *mean);
 
-// Products with the tangent of the k-th azimuth's air, as at the scene's, by differences of `size` times y:
-// image = Cᵀ A C y of members and air (n + n_air), without the rotor's angle where it turns.
-typedef struct bough_azimuth_product bough_azimuth_product;
-bough_azimuth_product *bough_azimuth_product_create(bough_arena *arena, const bough_azimuths *azimuths, int k,
-                                                    bool dynamic, int *n_air);
-bough_status bough_azimuth_product_follow(bough_azimuth_product *product, double size, bool to_one_side,
-                                          const double *y, double *image);
+// The state of the k-th azimuth for the mean tangent.
+bough_air_azimuth bough_azimuths_air(const bough_azimuths *azimuths, int k);
 
 // First-order change of the eigenvalues of n modes from those of the mean by the air of each azimuth: change
 // (azimuths × n) [1/s]; NaN without a left vector.

@@ -146,16 +146,11 @@ static double *air_rates(bough_arena *arena, const work *w, const side *right) {
     bough_dense_product((bough_product){w->m, w->q, w->m, false, .factor = 1, .keep = 1, .rows_a = t->all},
                         bough_air_tangent_entry(t, (size_t)w->n, (size_t)w->n), right->air, rate);
     if (w->system->def->spin == 0) return rate;
-    int first = w->system->group->n_row, all = first + n;
-    const int *row = bough_air_tangent_rows(arena, w->system->simulation, w->system->group, n);
-    for (int c = 0; c < w->q; c++) {
-        const double *from = right->air + (size_t)c * (size_t)w->m;
-        double *to = rate + (size_t)c * (size_t)w->m;
-        for (int k = 0; k < parts * parts * n; k++) {
-            int a = k / n / parts, b = k / n % parts, j = first + k % n;
-            to[row[a * all + j] - w->n] -= w->rate[a * parts + b] * from[row[b * all + j] - w->n];
-        }
-    }
+    int *row = bough_arena_take(arena, (size_t)(parts * n + 1) * sizeof *row);
+    for (int k = 0; k < parts * n; k++)
+        row[k] = bough_air_tangent_blade(w->system->simulation, w->system->group, k / n) * n + k % n;
+    for (size_t at = 0; at < (size_t)w->q * (size_t)w->m; at += (size_t)w->m)
+        bough_modes_add_rate(w->system->def, w->rate, n, row, -1, right->air + at, rate + at);
     return rate;
 }
 

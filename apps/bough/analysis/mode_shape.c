@@ -355,16 +355,14 @@ static bough_pattern name_pattern(const pattern *p, const double whirl[3]) {
     return p->cosine > p->sine ? BOUGH_PATTERN_COSINE : BOUGH_PATTERN_SINE;
 }
 
-enum { MOST_BLADES = 16 };
-
 // A pattern exp(−i 2πk/n) exp(iωt) is cos(ωt − 2πk/n): it runs towards growing azimuth.
 static void set_pattern(const mode_shape *x, bough_scene_mode *mode) {
     const bough_blade_group *g = x->group;
     pattern sum = {0};
-    if (g->n == 0 || g->n > MOST_BLADES) return;
+    if (g->n == 0 || g->n > BOUGH_MOST_BLADES) return;
     for (int i = 0; i < g->blade[0]->mesh->n; i++) {
         for (int c = 0; c < BENDING; c++) {
-            double real[MOST_BLADES], imaginary[MOST_BLADES];
+            double real[BOUGH_MOST_BLADES], imaginary[BOUGH_MOST_BLADES];
             for (int k = 0; k < g->n; k++) {
                 real[k] = bending(x, g->blade[k], 0, i, c);
                 imaginary[k] = bending(x, g->blade[k], 1, i, c);

@@ -21,7 +21,7 @@ typedef struct linear {
     bough_vibration_point point;
     bool in_air, dynamic;                       // the air's forces follow the motion; they have memory
     bough_azimuths azimuths;                    // A is the mean over these
-    bough_azimuth_product **air;                // (azimuths.n)
+    bough_air_change **air;                     // (azimuths.n)
     int n, m;                                   // states of the members, of the air
     int n_all;                                  // of a blade and its air
     const int *row;                             // (n_part × n_all) their rows among all
@@ -45,8 +45,10 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
         bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
         BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, &x->point, &x->azimuths));
         x->air = bough_arena_take(arena, (size_t)x->azimuths.n * sizeof *x->air);
-        for (int k = 0; k < x->azimuths.n; k++)
-            x->air[k] = bough_azimuth_product_create(arena, &x->azimuths, k, x->dynamic, &x->m);
+        for (int k = 0; k < x->azimuths.n; k++) {
+            bough_air_azimuth of = bough_azimuths_air(&x->azimuths, k);
+            x->air[k] = bough_air_change_create(arena, &of, x->dynamic, &x->m);
+        }
     }
     int n_air = x->in_air ? x->m / s->scene->turbine.n_blade : 0;
     x->n_all = def->n_row + n_air;
@@ -86,17 +88,16 @@ static void add_blades(const linear *x, int shift, double factor, const double *
 }
 
 // Adds the part of one azimuth's air to A y; coupling between blades is its mean over the blades.
-static bough_status add_azimuth(linear *x, bough_azimuth_product *air, double size, const double *y,
+static bough_status add_azimuth(linear *x, bough_air_change *air, double size, const double *y,
                                 double *image) {
     double share = 1. / x->azimuths.n;
     int shifts = x->point.def.spin != 0 ? x->point.def.n_part : 1;
-    BOUGH_TRY(bough_azimuth_product_follow(air, size, false, y, x->follows));
+    BOUGH_TRY(bough_air_change_follow(air, size, false, y, x->follows));
     for (int i = 0; i < x->n + x->m; i++) image[i] += share * x->follows[i];
     bool others = moves_others(x, y);
     for (int shift = 0; shift < shifts && shifts > 1; shift++) {
         take_blades(x, shift, y, x->turned);
-        if (shift > 0 || others)
-            BOUGH_TRY(bough_azimuth_product_follow(air, size, false, x->turned, x->follows));
+        if (shift > 0 || others) BOUGH_TRY(bough_air_change_follow(air, size, false, x->turned, x->follows));
         add_blades(x, shift, share * (1. / shifts - (shift == 0)), x->follows, image);
     }
     return bough_ok();

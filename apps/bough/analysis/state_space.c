@@ -6,6 +6,8 @@
 #include "apps/bough/model/control_link.h"
 #include "apps/bough/model/equilibrium.h"
 
+#include <stdarg.h>
+
 // Differences: of a state in units of its scale, of an input relative to its value or to 1.
 static const double difference = 3e-4;
 
@@ -29,6 +31,15 @@ typedef struct work {
     input *input; // (n_input)
     double *size; // (n_input)
 } work;
+
+__attribute__((format(printf, 3, 4))) static void name_signal(bough_signal_name *to, const char *unit,
+                                                              const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(to->name, sizeof to->name, format, arguments);
+    va_end(arguments);
+    to->unit = unit;
+}
 
 // -- inputs ---------------------------------------------------------------------------------------
 
@@ -58,8 +69,7 @@ static void add_input(work *w, input_kind kind, int index, double base, const ch
     int k = w->n_input++;
     w->input[k] = (input){kind, index, base};
     w->size[k] = difference * fmax(1, fabs(base));
-    snprintf(to->input[k].name, sizeof to->input[k].name, "%s", name);
-    to->input[k].unit = unit;
+    name_signal(&to->input[k], unit, "%s", name);
     to->input[k].value = base;
 }
 
@@ -87,15 +97,6 @@ static void find_inputs(work *w, bough_state_space *to) {
 
 // -- names ----------------------------------------------------------------------------------------
 
-static void name_state(bough_signal_name *to, const char *body, const char *what, int number,
-                       const char *unit) {
-    if (number > 0)
-        snprintf(to->name, sizeof to->name, "%s %s %d", body, what, number);
-    else
-        snprintf(to->name, sizeof to->name, "%s %s", body, what);
-    to->unit = unit;
-}
-
 // Coordinates and speeds of a joint: lengths, then angles or a quaternion, which has more coordinates than
 // speeds.
 static void name_joint(const bough_tree *tree, const bough_link *link, bough_signal_name *state) {
@@ -103,11 +104,11 @@ static void name_joint(const bough_tree *tree, const bough_link *link, bough_sig
     const char *angle = link->n_coordinates > link->n_speeds ? "-" : "rad";
     int slides = bough_joint_n_slides(link->joint.kind);
     for (int k = 0; k < link->n_coordinates; k++)
-        name_state(&state[link->first_coordinate + k], body, "coordinate", k + 1 + link->part,
-                   k < slides ? "m" : angle);
+        name_signal(&state[link->first_coordinate + k], k < slides ? "m" : angle, "%s coordinate %d", body,
+                    k + 1 + link->part);
     for (int k = 0; k < link->n_speeds; k++)
-        name_state(&state[tree->n_q + link->first_speed + k], body, "speed", k + 1 + link->part,
-                   k < slides ? "m/s" : "rad/s");
+        name_signal(&state[tree->n_q + link->first_speed + k], k < slides ? "m/s" : "rad/s", "%s speed %d",
+                    body, k + 1 + link->part);
 }
 
 // Rows of rod.h: component-major over the moving vertices.
@@ -118,18 +119,15 @@ static void name_rod(const bough_system *rod, bough_signal_name *state) {
                                {"p2", "-"},     {"p3", "-"},     {"ux", "m/s"},  {"uy", "m/s"}, {"uz", "m/s"},
                                {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
     int n = rod->n_state / BOUGH_BLADE_ROWS;
-    for (int k = 0; k < rod->n_state; k++) {
-        name_state(&state[k], rod->name, row[k / n].name, 0, row[k / n].unit);
-        size_t length = strlen(state[k].name);
-        snprintf(state[k].name + length, sizeof state[k].name - length, " of vertex %d", k % n + 1);
-    }
+    for (int k = 0; k < rod->n_state; k++)
+        name_signal(&state[k], row[k / n].unit, "%s %s of vertex %d", rod->name, row[k / n].name, k % n + 1);
 }
 
 static void name_air(const bough_simulation *s, int n_air, bough_signal_name *state) {
     int n_blade = s->scene->turbine.n_blade;
     for (int k = 0; k < n_air; k++) {
         const char *blade = s->scene->body[s->scene->turbine.blade[k / (n_air / n_blade)]].name;
-        name_state(&state[k], blade, "air", k % (n_air / n_blade) + 1, "-");
+        name_signal(&state[k], "-", "%s air %d", blade, k % (n_air / n_blade) + 1);
     }
 }
 
@@ -140,12 +138,11 @@ static void name_states(const work *w, bough_state_space *to) {
     for (int i = 1; i < a->n_member; i++) {
         const bough_system *member = &a->member[i]->system;
         for (int k = 0; k < member->n_state; k++)
-            name_state(&to->state[a->state_offset[i] + k], member->name, "state", k + 1, "-");
+            name_signal(&to->state[a->state_offset[i] + k], "-", "%s state %d", member->name, k + 1);
     }
     for (int k = 0; k < w->s->n_beam; k++) {
         const bough_beam *beam = &w->s->beam[k];
-        int i = beam->port + 1; // member of the port
-        if (beam->rod) name_rod(&a->member[i]->system, to->state + a->state_offset[i]);
+        if (beam->rod) name_rod(&w->s->rod[beam->port].system, to->state + bough_beam_row(w->s, beam));
     }
     for (int k = 0; k < a->n_state; k++) to->state[k].value = w->about[k];
     name_air(w->s, to->n - a->n_state, to->state + a->n_state);
@@ -153,8 +150,7 @@ static void name_states(const work *w, bough_state_space *to) {
 
 static void name_outputs(const work *w, bough_state_space *to) {
     for (int k = 0; k < to->n_output; k++) {
-        snprintf(to->output[k].name, sizeof to->output[k].name, "%s", w->channels.channel[k].name);
-        to->output[k].unit = w->channels.channel[k].unit;
+        name_signal(&to->output[k], w->channels.channel[k].unit, "%s", w->channels.channel[k].name);
         to->output[k].value = w->value[0][k];
     }
 }

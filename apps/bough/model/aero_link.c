@@ -340,12 +340,8 @@ void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, dou
     bough_rotor_memory_snapshot(link->rotor, &link->data[0], &(bough_snapshot){move, (char *)memory, 0});
 }
 
-void bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory) {
-    bough_aero_signal_snapshot(link->signal[blade], &(bough_snapshot){move, (char *)memory, 0});
-}
-
-int bough_aero_link_loads_size(bough_aero_link *link, int blade) {
-    bough_snapshot s = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
+int bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory) {
+    bough_snapshot s = {move, (char *)memory, 0};
     bough_aero_signal_snapshot(link->signal[blade], &s);
     return (int)(s.used / sizeof(double));
 }

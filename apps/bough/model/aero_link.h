@@ -27,9 +27,8 @@ void bough_aero_link_remember(bough_aero_link *link, double t, bool moved);
 // Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
 void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);
 
-// Saves or restores the present loads on a blade: memory (bough_aero_link_loads_size).
-void bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory);
-int bough_aero_link_loads_size(bough_aero_link *link, int blade);
+// Saves, restores or measures the present loads on a blade; returns the size of `memory`.
+int bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 

@@ -148,10 +148,6 @@ static void sample_springs(void *self, double t, double *value) {
         value[0] = bough_tree_spring(s->tree, s->view, k, &value[1], &direction);
 }
 
-static const char *name_spring(const bough_simulation *s, int k) {
-    return s->scene->connector[BOUGH_SCENE_SPRING][k].name;
-}
-
 static void sample_bushings(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
@@ -167,10 +163,6 @@ static void sample_bushings(void *self, double t, double *value) {
     }
 }
 
-static const char *name_bushing(const bough_simulation *s, int k) {
-    return s->scene->connector[BOUGH_SCENE_BUSHING][k].name;
-}
-
 // Forces and moments of closures under the rods' present forces.
 static void sample_closures(void *self, double t, double *value) {
     const bough_simulation *s = self;
@@ -179,8 +171,11 @@ static void sample_closures(void *self, double t, double *value) {
         bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
 }
 
-static const char *name_closure(const bough_simulation *s, int k) {
-    return s->scene->connector[BOUGH_SCENE_CLOSURE][k].name;
+static void add_connectors(bough_simulation *s, bough_channels *list, bough_channel_sample *sample,
+                           bough_channel_part part, bough_scene_connector_kind kind) {
+    bough_channels_group(list, sample, s);
+    for (int k = 0; k < s->scene->n_connector[kind]; k++)
+        bough_channel_family_add(list, part, s->scene->connector[kind][k].name, "");
 }
 
 static void sample_markers(void *self, double t, double *value) {
@@ -410,9 +405,9 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     add_joints(s, channels);
     add_free_bodies(s, channels);
     add_drives(s, channels);
-    add_each(s, channels, sample_springs, BOUGH_CHANNELS_SPRING, s->tree->n_springs, name_spring);
-    add_each(s, channels, sample_bushings, BOUGH_CHANNELS_BUSHING, s->tree->n_bushings, name_bushing);
-    add_each(s, channels, sample_closures, BOUGH_CHANNELS_CLOSURE, s->tree->n_closures, name_closure);
+    add_connectors(s, channels, sample_springs, BOUGH_CHANNELS_SPRING, BOUGH_SCENE_SPRING);
+    add_connectors(s, channels, sample_bushings, BOUGH_CHANNELS_BUSHING, BOUGH_SCENE_BUSHING);
+    add_connectors(s, channels, sample_closures, BOUGH_CHANNELS_CLOSURE, BOUGH_SCENE_CLOSURE);
     add_each(s, channels, sample_markers, BOUGH_CHANNELS_MARKER, scene->n_marker, name_marker);
     add_each(s, channels, sample_blades, BOUGH_CHANNELS_BLADE, scene->turbine.n_blade, NULL);
     find_tower(s);
