@@ -14,8 +14,7 @@ typedef struct work {
     bough_simulation *simulation;
     bough_whole *whole;
     double time;
-    bool dynamic;
-    int n_memory, n_air;
+    int n_memory, n_air;             // 0: the air has no memory
     int *row;                        // (n_air) of the memory
     double *memory, *before, *after; // (n_memory): at rest; at both ends of rate_time
     double *state;                   // (n)
@@ -50,7 +49,7 @@ static void advance_air(work *w, const double *state, bool loads, double step, d
 static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->time, w->state);
-    if (w->dynamic) {
+    if (w->n_memory > 0) {
         advance_air(w, w->state, false, rate_time, w->before, w->after);
         memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
         advance_air(w, w->state, true, rate_time, w->before, w->after);
@@ -68,7 +67,7 @@ static void settle(work *w, const double *state) {
     bough_simulation *s = w->simulation;
     bough_equilibrium_set_state(s, w->time, state);
     bough_aero_link_hold(s->aero, w->time);
-    if (!w->dynamic) return;
+    if (w->n_memory == 0) return;
     bough_aero_link_continue(s->aero, w->time, false);
     bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
     for (int k = 0; k < REST_STEPS; k++) {
@@ -406,12 +405,13 @@ static bough_status follow_inputs(work *w, const double *state, const bough_air_
     return bough_ok();
 }
 
-static work start(bough_arena *arena, bough_simulation *s, bough_whole *whole, double time, bool dynamic) {
-    const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
+static work start(bough_arena *arena, const bough_air_azimuth *at) {
+    const bough_rotor *rotor = bough_aero_link_rotor(at->simulation->aero);
+    bool dynamic = at->simulation->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
-    work w = {.simulation = s, .whole = whole, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
+    work w = {.simulation = at->simulation, .whole = at->whole, .time = at->time, .n_memory = n_memory};
     take(arena, &w);
-    if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
+    if (n_memory > 0) w.n_air = bough_rotor_memory_states(rotor, w.row);
     return w;
 }
 
@@ -454,9 +454,9 @@ static bough_status follow_all(bough_arena *arena, work *w, const double *state,
     return follow_others(w, state, good ? group : NULL, t);
 }
 
-bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x, bool dynamic,
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *x,
                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
-    work w = start(arena, x->simulation, x->whole, x->time, dynamic);
+    work w = start(arena, x);
     if (t->matrix == NULL) *t = take_tangent(arena, &w, inputs ? inputs->n : 0);
     if (x->blend && x->group->n > 0) w.mean = bough_air_mean_create(arena, x, t);
     bough_status status = follow_all(arena, &w, x->state, x->group, t);
@@ -477,11 +477,10 @@ struct bough_air_change {
     bool known;     // the rates of its state are in w.rate[0]
 };
 
-bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *at, bool dynamic,
-                                          int *n_air) {
+bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *at, int *n_air) {
     bough_simulation *s = at->simulation;
     bough_air_change *x = bough_arena_take(arena, sizeof *x);
-    *x = (bough_air_change){.w = start(arena, s, at->whole, at->time, dynamic), .at = *at, .angle = -1};
+    *x = (bough_air_change){.w = start(arena, at), .at = *at, .angle = -1};
     settle(&x->w, at->state);
     *n_air = x->w.n_air;
     int n_per_blade = *n_air / s->scene->turbine.n_blade, speed;

@@ -48,19 +48,18 @@ typedef struct bough_air_azimuth {
 } bough_air_azimuth;
 
 // About the azimuth's state, or an azimuth's share of the mean, which is added; a tangent that is {0} takes
-// its matrices. `dynamic`: with the memory that the scene's inflow and stall have; inputs NULL: none, as of a
-// mean. States of a group of rods, and of places that share no loads, are changed at once; means over the
-// disk then count as of the blade's nearest state. Where a change of all misses by more than 1e-3 with that,
-// each state is changed by itself. The simulation is left in that state.
-bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
+// its matrices. With the memory that the scene's inflow and stall have if modes.air is dynamic; inputs NULL:
+// none, as of a mean. States of a group of rods, and of places that share no loads, are changed at once;
+// means over the disk then count as of the blade's nearest state. Where a change of all misses by more than
+// 1e-3 with that, each state is changed by itself. The simulation is left in that state.
+bough_status bough_air_tangent_add(bough_arena *arena, const bough_air_azimuth *azimuth,
                                    const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
 // The same for one change of bodies and air at once: the products that the matrices have with it.
 typedef struct bough_air_change bough_air_change;
 
 // Brings the air to rest about the state of one of a mean's azimuths; *n_air: its states.
-bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *azimuth, bool dynamic,
-                                          int *n_air);
+bough_air_change *bough_air_change_create(bough_arena *arena, const bough_air_azimuth *azimuth, int *n_air);
 
 // Cᵀ (A y + R m) and Cᵀ (G y + H m) into image (n + n_air), of C change = y, m (n + n_air), without the
 // rotor's angle where there are several azimuths, by differences of `size` times it, to both sides or, at

@@ -59,13 +59,12 @@ static void begin(const bough_azimuths *a, bough_azimuth *x, double time, double
     bough_equilibrium_set_state(x->simulation, time, state);
 }
 
-static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bool balanced,
-                            bough_azimuth *x) {
+static bough_status turn_on(bough_arena *arena, const bough_azimuths *a, double time, bough_azimuth *x) {
     const bough_simulation *s = a->at[0].simulation;
     BOUGH_TRY(
         bough_simulation_build_on(arena, turned_scene(arena, s, x->turn), s->pool, NULL, &x->simulation));
     begin(a, x, time, bough_arena_doubles(arena, (size_t)s->assembly->n_state));
-    if (balanced) {
+    if (s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM) {
         bough_status status = bough_simulation_equilibrium(x->simulation, time, BOUGH_EQUILIBRIUM_NEAR, NULL);
         if (!bough_is_ok(&status))
             return bough_fail(status.code, "with the rotor turned further by %.3g degrees: %.380s",
@@ -84,7 +83,7 @@ static void set_mean(const bough_azimuths *a, double *state) {
     }
 }
 
-bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time, bool balanced,
+bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time,
                                  bough_vibration_point *point, bough_azimuths *a) {
     int n = point->group.n;
     *a = (bough_azimuths){
@@ -98,7 +97,7 @@ bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double
         if (k == 0)
             *x = (bough_azimuth){x->turn, s, *point, x->blend};
         else
-            BOUGH_TRY(turn_on(arena, a, time, balanced, x));
+            BOUGH_TRY(turn_on(arena, a, time, x));
     }
     a->at[0].point.state =
         bough_arena_copy(arena, point->state, (size_t)s->assembly->n_state * sizeof(double));
@@ -122,13 +121,12 @@ bough_air_azimuth bough_azimuths_air(const bough_azimuths *a, int k) {
                                .share = 1. / a->n};
 }
 
-bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bool dynamic,
-                                    bough_air_tangent *mean) {
+bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *a, bough_air_tangent *mean) {
     bough_air_azimuth of;
     *mean = (bough_air_tangent){0};
     for (int k = 0; k < a->n; k++) {
         of = bough_azimuths_air(a, k);
-        BOUGH_TRY(bough_air_tangent_add(arena, &of, dynamic, NULL, mean));
+        BOUGH_TRY(bough_air_tangent_add(arena, &of, NULL, mean));
     }
     bough_air_tangent_close(arena, &of, mean);
     return bough_ok();
@@ -156,12 +154,12 @@ static bough_status quotient(bough_air_change *air, size_t all, const bough_mode
     return bough_ok();
 }
 
-static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, int k, bool dynamic, int n,
+static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, int k, int n,
                                    const bough_mode_vectors *vector, double complex *value) {
     const bough_assembly *assembly = a->at[k].simulation->assembly;
     bough_air_azimuth of = bough_azimuths_air(a, k);
     int n_air;
-    bough_air_change *air = bough_air_change_create(arena, &of, dynamic, &n_air);
+    bough_air_change *air = bough_air_change_create(arena, &of, &n_air);
     size_t n_state = (size_t)assembly->n_state, all = n_state + (size_t)n_air;
     double *scale, *image;
     bough_arena_each(arena, all, &scale, &image);
@@ -174,11 +172,11 @@ static bough_status find_quotients(bough_arena *arena, const bough_azimuths *a, 
     return bough_ok();
 }
 
-bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *a, bool dynamic, int n,
+bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *a, int n,
                                    const bough_mode_vectors *vector, double complex *change) {
     for (int i = 0; i < a->n; i++) {
         bough_arena *own = bough_arena_child(arena);
-        bough_status status = find_quotients(own, a, i, dynamic, n, vector, change + i * n);
+        bough_status status = find_quotients(own, a, i, n, vector, change + i * n);
         bough_arena_destroy(own);
         if (!bough_is_ok(&status)) return status;
     }

@@ -25,13 +25,13 @@ typedef struct bough_azimuths {
 } bough_azimuths;
 
 // The first is that of the simulation and its point, both borrowed; the others are those of further
-// simulations of its scene, in equilibrium at `time` if `balanced`. Sets the point's state to the mean over
-// all. Where no rotor of equal blades turns there is one azimuth only.
-bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time, bool balanced,
+// simulations of its scene, in equilibrium at `time` if modes.at asks for it. Sets the point's state to the
+// mean over all. Where no rotor of equal blades turns there is one azimuth only.
+bough_status bough_azimuths_find(bough_arena *arena, bough_simulation *s, double time,
                                  bough_vibration_point *point, bough_azimuths *azimuths);
 
 // The mean tangent, of blades on blades also over the blades.
-bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic,
+bough_status bough_azimuths_tangent(bough_arena *arena, const bough_azimuths *azimuths,
                                     bough_air_tangent *mean);
 
 // The state of the k-th azimuth for the mean tangent.
@@ -39,5 +39,5 @@ bough_air_azimuth bough_azimuths_air(const bough_azimuths *azimuths, int k);
 
 // First-order change of the eigenvalues of n modes from those of the mean by the air of each azimuth: change
 // (azimuths × n) [1/s]; NaN without a left vector.
-bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *azimuths, bool dynamic, int n,
+bough_status bough_azimuths_change(bough_arena *arena, const bough_azimuths *azimuths, int n,
                                    const bough_mode_vectors *vector, double complex *change);

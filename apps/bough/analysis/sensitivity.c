@@ -19,7 +19,7 @@ enum { ITERATIONS = 4 }; // of inverse iteration about an eigenvalue that is kno
 typedef struct linear {
     bough_simulation *simulation;
     bough_vibration_point point;
-    bool in_air, dynamic;                       // the air's forces follow the motion; they have memory
+    bool in_air;                                // the air's forces follow the motion
     bough_azimuths azimuths;                    // A is the mean over these
     bough_air_change **air;                     // (azimuths.n)
     int n, m;                                   // states of the members, of the air
@@ -40,14 +40,12 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, double time
                           "planar joints",
                           s->scene->file);
     x->in_air = bough_air_follows(s->scene);
-    x->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     if (x->in_air) {
-        bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-        BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, &x->point, &x->azimuths));
+        BOUGH_TRY(bough_azimuths_find(arena, s, time, &x->point, &x->azimuths));
         x->air = bough_arena_take(arena, (size_t)x->azimuths.n * sizeof *x->air);
         for (int k = 0; k < x->azimuths.n; k++) {
             bough_air_azimuth of = bough_azimuths_air(&x->azimuths, k);
-            x->air[k] = bough_air_change_create(arena, &of, x->dynamic, &x->m);
+            x->air[k] = bough_air_change_create(arena, &of, &x->m);
         }
     }
     int n_air = x->in_air ? x->m / s->scene->turbine.n_blade : 0;
@@ -168,7 +166,7 @@ static bough_status fill(bough_arena *arena, linear *x, double *matrix) {
     size_t all = (size_t)(x->n + x->m);
     double *unit = bough_arena_doubles(arena, all);
     bough_air_tangent air;
-    if (x->in_air) BOUGH_TRY(bough_azimuths_tangent(arena, &x->azimuths, x->dynamic, &air));
+    if (x->in_air) BOUGH_TRY(bough_azimuths_tangent(arena, &x->azimuths, &air));
     for (size_t j = 0; j < all; j++) {
         double *column = matrix + j * all;
         unit[j] = 1;

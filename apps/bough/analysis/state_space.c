@@ -245,9 +245,8 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     find_inputs(&w, space);
     if (bough_air_follows(s->scene)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
-        bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
         bough_air_azimuth about = {.simulation = s, .whole = w.whole, .time = time, .state = w.about};
-        BOUGH_TRY(bough_air_tangent_add(arena, &about, dynamic, &inputs, &air));
+        BOUGH_TRY(bough_air_tangent_add(arena, &about, &inputs, &air));
     }
     take(arena, air.n_air, &w, space);
     bough_assembly_scales(s->assembly, w.scale);

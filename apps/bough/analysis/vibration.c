@@ -307,21 +307,19 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s,
 
 // The air about the state, as a mean over the azimuths.
 typedef struct air_about {
-    bool follows, dynamic; // its forces follow the motion; they have memory
-    bool changes;          // changes with the azimuth are wanted
+    bool follows; // its forces follow the motion
+    bool changes; // changes with the azimuth are wanted
     bough_azimuths azimuths;
     bough_air_tangent tangent;
 } air_about;
 
 static bough_status find_air(bough_arena *arena, bough_simulation *s, double time, bough_vibration_point *x,
                              air_about *air) {
-    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     air->follows = bough_air_follows(s->scene);
-    air->dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     air->azimuths.n = 1;
     if (!air->follows) return bough_ok();
-    BOUGH_TRY(bough_azimuths_find(arena, s, time, balanced, x, &air->azimuths));
-    return bough_azimuths_tangent(arena, &air->azimuths, air->dynamic, &air->tangent);
+    BOUGH_TRY(bough_azimuths_find(arena, s, time, x, &air->azimuths));
+    return bough_azimuths_tangent(arena, &air->azimuths, &air->tangent);
 }
 
 // The largest changes of frequency and damping ratio over the azimuths, change (azimuths × n).
@@ -355,7 +353,7 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     if (azimuths == 1) return bough_ok();
     int n = count_pairs(s->tree, x->def.point, count, v);
     double complex *change = bough_arena_take(arena, (size_t)(azimuths * wanted) * sizeof *change);
-    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, air->dynamic, n, v->vector, change));
+    BOUGH_TRY(bough_azimuths_change(arena, &air->azimuths, n, v->vector, change));
     set_changes(azimuths, n, change, v);
     return bough_ok();
 }
@@ -470,7 +468,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, int count, bo
         status = solve_about(arena, s, x, air, count, v);
     }
     BOUGH_TRY(status);
-    bool dynamic = air->follows && air->dynamic; // with other residuals
+    bool dynamic = air->follows && s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC; // with other residuals
     for (int k = 0; k < MOVES && !dynamic && (point = better_point(v, x->def.point)) > 0; k++) {
         x->def.point = point;
         BOUGH_TRY(solve_about(arena, s, x, air, count, v));

@@ -95,6 +95,7 @@ typedef struct continuation {
     bough_equilibrium_work *work;
     double *state; // (n_state) of the equilibrium found last
     int how;
+    int finer; // segments relative to the scene's, where a finer mesh is tried
     bool started;
 } continuation;
 
@@ -184,11 +185,6 @@ enum { FINER = 2, MOST_SEGMENTS = 2000 };
 // A rod whose sections rotate by this angle over a segment may need shorter segments [rad].
 static const double sharp = 0.7;
 
-typedef struct finer_mesh {
-    const continuation *given;
-    int times; // segments relative to the scene's
-} finer_mesh;
-
 static int count_segments(const bough_scene *scene) {
     int n = 0;
     for (int i = 0; i < scene->n_body; i++) {
@@ -212,12 +208,11 @@ static const bough_beam *sharpest_rod(const bough_simulation *s) {
 }
 
 static bough_status find_on_finer(bough_arena *arena, void *data) {
-    const finer_mesh *x = data;
-    continuation fine = *x->given;
+    continuation fine = *(const continuation *)data;
     bough_scene *scene = bough_scene_copy(arena, fine.simulation->scene);
     scene->simulation.initial = BOUGH_SCENE_UNDEFORMED;
     for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].fidelity == BOUGH_SCENE_ROD) scene->body[i].rod.n_segment *= x->times;
+        if (scene->body[i].fidelity == BOUGH_SCENE_ROD) scene->body[i].rod.n_segment *= fine.finer;
     }
     BOUGH_TRY(bough_simulation_build(arena, scene, &fine.simulation));
     fine.started = false;
@@ -225,14 +220,13 @@ static bough_status find_on_finer(bough_arena *arena, void *data) {
 }
 
 // Completes the failure on the scene's mesh by whether a finer mesh has an equilibrium.
-static bough_status explain_by_finer(const continuation *c, bough_status failure) {
+static bough_status explain_by_finer(continuation *c, bough_status failure) {
     const bough_beam *beam = sharpest_rod(c->simulation);
     int times = 0;
     if (beam == NULL) return failure;
     for (int k = 0; k < FINER && finer[k] * count_segments(c->simulation->scene) <= MOST_SEGMENTS; k++) {
-        finer_mesh x = {c, finer[k]};
-        times = finer[k];
-        bough_status status = bough_arena_use(find_on_finer, &x);
+        times = c->finer = finer[k];
+        bough_status status = bough_arena_use(find_on_finer, c);
         if (bough_is_ok(&status))
             return bough_fail(BOUGH_FAILED,
                               "%s: no equilibrium found: its segments are too long for its load; with %d "

@@ -41,7 +41,7 @@ static void open_scene(bough_arena *arena, scene *c) {
     static const double same[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     bough_air_azimuth azimuth = {s, c->x.whole, 0, c->x.state, &c->x.group, s, &c->x.group, same, 1};
     c->air = (bough_air_tangent){0};
-    check_ok(bough_air_tangent_add(arena, &azimuth, false, NULL, &c->air));
+    check_ok(bough_air_tangent_add(arena, &azimuth, NULL, &c->air));
     bough_air_tangent_close(arena, &azimuth, &c->air);
     c->system = (bough_aeroelastic){s, c->x.whole, &c->x.def, &c->x.group, &c->air};
     assert_int_equal(c->x.group.n, 3);

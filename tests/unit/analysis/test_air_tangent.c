@@ -8,7 +8,7 @@ static const char *const before_the_tower[] = {
     "bodies[hub].joint.angle=60 deg",
     "aero.ramp=[0 s, 0 s]",
     "aero.wind={kind: power, speed: 10 m/s, exponent: 0.2, reference_height: 90 m}",
-    "modes.of=scene",
+    "modes={of: scene, air: dynamic}",
     NULL,
 };
 
@@ -30,9 +30,9 @@ TEST(equal_blades_at_once_have_the_tangent_of_each) {
     check_ok(bough_vibration_point_find(arena, s, 0, &x));
     assert_int_equal(x.group.n, 3);
     bough_air_azimuth about = {.simulation = s, .whole = x.whole, .state = x.state};
-    check_ok(bough_air_tangent_add(arena, &about, true, NULL, &each));
+    check_ok(bough_air_tangent_add(arena, &about, NULL, &each));
     about.group = &x.group;
-    check_ok(bough_air_tangent_add(arena, &about, true, NULL, &at_once));
+    check_ok(bough_air_tangent_add(arena, &about, NULL, &at_once));
     assert_true(each.n_air > 0);
     bool other = false;
     for (int k = 0; k < 4; k++) {
