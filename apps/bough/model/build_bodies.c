@@ -87,21 +87,19 @@ static bool equal_structures(const bough_scene_structure *x, const bough_scene_s
     return equal;
 }
 
-// One of the first n beams of a simulation with the same mesh as this beam; NULL: there is none.
-static const bough_beam *equal_in(const bough_simulation *s, int n, const bough_beam *beam) {
+// Equal beams, such as the blades of a rotor, share one mesh: a beam built before, or one of the simulation
+// beside it; NULL: none is equal.
+static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
+    const bough_simulation *of[2] = {b->s, b->beside};
     const bough_scene_rod *rod = &beam->body->rod;
-    for (const bough_beam *other = s->beam; other < s->beam + n; other++) {
-        const bough_scene_rod *its = &other->body->rod;
-        bool equal = its->n_segment == rod->n_segment && its->grading == rod->grading;
-        if (equal && equal_structures(&its->structure, &rod->structure)) return other;
+    for (int i = 0; i < 2 && of[i]; i++) {
+        for (const bough_beam *other = of[i]->beam; other < of[i]->beam + of[i]->n_beam; other++) {
+            const bough_scene_rod *its = &other->body->rod;
+            bool equal = its->n_segment == rod->n_segment && its->grading == rod->grading;
+            if (equal && equal_structures(&its->structure, &rod->structure)) return other;
+        }
     }
     return NULL;
-}
-
-// Equal beams, such as the blades of a rotor, share one mesh.
-static const bough_beam *equal_beam(const bough_builder *b, const bough_beam *beam) {
-    const bough_beam *equal = equal_in(b->s, b->s->n_beam, beam);
-    return equal || !b->beside ? equal : equal_in(b->beside, b->beside->n_beam, beam);
 }
 
 static bough_status discretise(bough_builder *b, bough_beam *beam) {
