@@ -43,6 +43,7 @@ grep -q '^simulation:' out/tune.yaml || fail 'tune.yaml has no block'
 grep -q '^# bar: rod: segments: [0-9]' out/tune.yaml || fail 'eight segments err by more than 2e-3'
 grep -q '</svg>' out/tune.svg || fail 'the picture'
 says 0 'segments' tune bar.yaml --set 'bodies[bar].rod.segments=64' --error 0.05 --out out # far too fine
+grep -q "^# bough run bar.yaml --set 'bodies.bar..rod.segments=64' " out/tune.yaml || fail 'the command lacks the setting given'
 consistent 0.05
 meets 0.05
 awk -F, '$NF == "yes" {exit !($4 < 64)}' out/tune.csv || fail '64 segments are kept though 0.05 is asked for'

@@ -35,8 +35,10 @@ typedef struct bough_tune_point {
 } bough_tune_point;
 
 typedef struct bough_tune_options {
-    double error;       // error bound relative to the range; 0: the scene's accuracy
-    double span;        // of the interval from the start [s]
+    double error; // error bound relative to the range; 0: the scene's accuracy
+    double span;  // of the interval from the start [s]
+    int n_set;
+    const char **set;   // (n_set) settings of the command line, "key=value"
     const char *folder; // for the results; made if missing
     bool (*stop)(void); // NULL: never stops
     FILE *stream;       // receives the table

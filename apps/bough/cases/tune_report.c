@@ -143,6 +143,7 @@ static void print_chosen(const bough_tune_state *t, bool words, FILE *stream) {
     const bough_tune_settings *s = &t->point[t->chosen].settings;
     bool whole = bough_scheme_at(s->scheme)->one_system;
     if (words) fprintf(stream, "# bough run %s", t->scene->file);
+    for (int k = 0; words && k < t->options->n_set; k++) fprintf(stream, " --set '%s'", t->options->set[k]);
     fprintf(stream,
             words ? " --set 'simulation.macro_step=%.9g ms' --set 'simulation.coupling={scheme: %s}'"
                     " --set 'simulation.%s="

@@ -28,6 +28,8 @@ static bough_status perform(bough_arena *arena, const void *given) {
     BOUGH_TRY(bough_open_scene(arena, options, &scene));
     bough_tune_options how = own->how;
     how.span = fmin(how.span > 0 ? how.span : default_span, scene->simulation.duration);
+    how.n_set = options->set.n;
+    how.set = options->set.text;
     how.folder = bough_out_folder(arena, options);
     how.stop = bough_stop_requested;
     how.stream = stdout;
