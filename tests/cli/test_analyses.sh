@@ -381,6 +381,13 @@ EOF
     expect 0 modes ../rotor.yaml --out rotor --until unstable --sweep 'bodies[nac].joint.stiffness=60, 52, 47'
     has ../stdout '^unstable from bodies.nac..joint.stiffness=49.0[45]'
     rm -r rotor
+    # the nacelle's slow vibration on a soft spring is a mode whether or not the rotor turns freely
+    for motion in 'motion: {speed: 50 rad/s}' 'speed: 50 rad/s'; do
+        expect 0 modes ../rotor.yaml --out rotor --set 'gravity=[0, 0, 0]' --set 'bodies[nac].joint.stiffness=0.1' \
+            --set "bodies[hub].joint={kind: revolute, parent: nac, axis: x, placement: [move x -0.5 m], $motion}"
+        near ../stdout '^ *1 ' 2 0.007658 1e-6
+        rm -r rotor
+    done
     # a rotor out of balance on a stiff support
     cat >../stiff.yaml <<'EOF'
 simulation: {duration: 1 s, macro_step: 10 ms}

@@ -363,11 +363,20 @@ static bough_status find_pairs(bough_arena *arena, bough_simulation *s, const bo
     return air->follows ? solve_in_air(arena, s, x, air, count, v) : solve_bodies(arena, s, x, count, v);
 }
 
-// Whether the rotor turns freely: by its own weight it has a slow motion at each azimuth, and none in the
-// mean.
-static bool rotor_is_free(const bough_simulation *s, const bough_blade_group *group) {
+// Whether a motion is mainly the rotation of a free rotor of equal blades: by its own weight it has a slow
+// one at each azimuth, and none in the mean.
+static bool turns_rotor(const bough_simulation *s, const bough_blade_group *group,
+                        const bough_eigen_pair *pair) {
     if (group->n == 0) return false;
-    return s->tree->links[s->tree->bodies[s->scene->turbine.rotor].link].motion == NULL;
+    const bough_link *link = &s->tree->links[s->tree->bodies[s->scene->turbine.rotor].link];
+    double largest = 0, part = 0;
+    for (int k = 0; k < s->tree->n_q; k++) {
+        double size = hypot(pair->shape_real[k], pair->shape_imag[k]);
+        largest = fmax(largest, size);
+        if (k >= link->first_coordinate && k < link->first_coordinate + link->n_coordinates)
+            part = fmax(part, size);
+    }
+    return link->motion == NULL && part > 0.5 * largest;
 }
 
 // Finds which of the values near 0 are modes.
@@ -381,16 +390,18 @@ static bough_status find_slow(bough_arena *arena, bough_simulation *s, const bou
     bool doubtful = false, turns = x->def.spin != 0 || x->def.n_axes > 0;
     for (int k = 0; k < v->count.found; k++) {
         bool small = modulus_of(&v->pair[k]) <= free_motion * point;
-        doubtful = doubtful || (small && may_be_slow(&v->pair[k], point));
+        bool may = small && may_be_slow(&v->pair[k], point);
+        doubtful = doubtful || (may && !turns_rotor(s, &x->group, &v->pair[k]));
     }
-    if (!doubtful || rotor_is_free(s, &x->group)) return bough_ok();
+    if (!doubtful) return bough_ok();
     there.def.point *= turns ? above : below; // the series converges above
     BOUGH_TRY(find_pairs(arena, s, &there, &alone, count, &other));
     v->slow = bough_arena_take(arena, (size_t)v->count.found * sizeof *v->slow);
     for (int k = 0; k < v->count.found; k++) {
         const bough_eigen_pair *a = &v->pair[k];
         double size = modulus_of(a);
-        for (int i = 0; i < other.count.found && may_be_slow(a, point); i++) {
+        bool may = may_be_slow(a, point) && !turns_rotor(s, &x->group, a);
+        for (int i = 0; i < other.count.found && may; i++) {
             const bough_eigen_pair *b = &other.pair[i];
             double off = hypot(a->real - b->real, fabs(a->imaginary) - fabs(b->imaginary));
             v->slow[k] = v->slow[k] || off < same * size;
