@@ -88,8 +88,14 @@ typedef struct bough_vibration_point {
     bough_modes_def def;
 } bough_vibration_point;
 
+// (azimuth.c)
 bough_status bough_vibration_point_find(bough_arena *arena, bough_simulation *s, double time,
                                         bough_vibration_point *point);
+
+// BOUGH_INVALID where the linear system, by its solutions about a point of the real axis [1/s], changes as
+// the bodies turn, unless the scene asks for it as it is (modes.linear).
+bough_status bough_vibration_check_constant(bough_arena *arena, const bough_simulation *s,
+                                            const bough_vibration_point *x, double point);
 
 // Sets v->mode from the eigenvectors v->pair about the point (mode_shape.c), but for their eigenvalues.
 void bough_vibration_describe(bough_arena *arena, const bough_simulation *s, const bough_vibration_point *x,
