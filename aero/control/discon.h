@@ -32,7 +32,7 @@ typedef struct bough_discon_sensed {
     double generator_speed, rotor_speed;   // [rad/s]
     double torque;                         // of the generator [N m]
     double shaft_power, electrical_power;  // [W]
-    double wind;                           // at the hub, along the shaft [m/s]
+    double wind;                           // undisturbed, at the hub, horizontal [m/s]
     double azimuth;                        // of blade 1 [rad]
 } bough_discon_sensed;
 

@@ -36,7 +36,7 @@ void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *moti
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
-    scratch->skew = atan2(size, axial);
+    scratch->skew = atan2(size, fabs(axial));
     // the flow along the shaft as the blades meet it
     scratch->wake = wake_strength(rotor, data, axial - bough_dot(data->disk_velocity, motion->shaft));
     bool yawed = size > 1e-9 * fabs(axial);

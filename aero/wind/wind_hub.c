@@ -30,7 +30,8 @@ static bough_wind_hub_row row_of(const double *v) {
                                 v[6], v[7], v[8] * BOUGH_DEGREE};
 }
 
-// Times must increase; the ninth number, the upflow, may be missing.
+// Times must increase; the ninth number, the upflow, may be missing. The direction turns the shorter way from
+// one row to the next.
 static bough_status read_row(const char *path, const char *line, int number, const bough_wind_hub_row *before,
                              bough_wind_hub_row *row) {
     double value[MOST] = {0};
@@ -45,6 +46,8 @@ static bough_status read_row(const char *path, const char *line, int number, con
         return bough_fail(BOUGH_INVALID, "%s:%d: times must increase: %g s is followed by %g s.", path,
                           number, before->time, row->time);
     }
+    if (before)
+        row->direction = before->direction + remainder(row->direction - before->direction, 2 * BOUGH_PI);
     return bough_ok();
 }
 

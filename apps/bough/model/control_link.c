@@ -126,11 +126,6 @@ static void pitch_to(const bough_control_link *l, const bough_scene_event *event
     for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = towards(sensed->pitch[b], to, reach);
 }
 
-static void feather(const bough_control_link *l, const bough_scene_event *event,
-                    const bough_discon_sensed *sensed, bough_discon_demand *demand) {
-    pitch_to(l, event, event->angle > 0 ? event->angle : BOUGH_PI / 2, sensed, demand);
-}
-
 // At a large pitch the law demands rated power at any speed, which would stop a rotor that starts: until it
 // reaches rated speed or a small pitch, its torque is that at zero pitch.
 static void run_up(const bough_control_link *l, const bough_discon_sensed *sensed, event_state *state,
@@ -181,11 +176,11 @@ static void change(bough_control_link *l, int i, const bough_discon_sensed *sens
         break;
     case BOUGH_SCENE_STOP:
         demand->torque = stopping_torque(state, gone, sensed->generator_speed);
-        feather(l, event, sensed, demand);
+        pitch_to(l, event, event->angle, sensed, demand);
         break;
     case BOUGH_SCENE_EMERGENCY_STOP:
         demand->torque = 0;
-        feather(l, event, sensed, demand);
+        pitch_to(l, event, event->angle, sensed, demand);
         break;
     case BOUGH_SCENE_GRID_LOSS: demand->torque = 0; break;
     case BOUGH_SCENE_PITCH_STUCK: demand->pitch[b] = state->angle; break;
@@ -248,8 +243,10 @@ static void root_moments(const bough_control_link *l, int b, double t, double *o
     *in = root[3] * cos(pitch) + root[4] * sin(pitch);
 }
 
-static double hub_wind(const bough_simulation *s) {
-    return s->aero ? bough_norm(bough_aero_link_data(s->aero, NULL)->disk_wind) : 0;
+// Speed of the undisturbed wind at the hub, its horizontal part.
+static double hub_wind(const bough_simulation *s, double t) {
+    bough_vec3 wind = s->aero ? bough_aero_link_hub_wind(s->aero, t) : bough_v3(0, 0, 0);
+    return hypot(wind.x, wind.y);
 }
 
 // Motion of the body that carries the rotor: velocity of its origin in ground axes, angular velocity about
@@ -306,7 +303,7 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
                              .torque = l->now.torque,
                              .shaft_power = speed * l->now.torque,
                              .electrical_power = electrical_power(l->control, speed, l->now.torque),
-                             .wind = hub_wind(s),
+                             .wind = hub_wind(s, t),
                              .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
     for (int b = 0; b < l->n_blade; b++) x.pitch[b] = bough_simulation_pitch(s, bough_simulation_blade(s, b));
     if (l->discon == NULL) return x;
@@ -354,6 +351,14 @@ static bough_status step_fmu(bough_control_link *l, const bough_discon_sensed *x
     return bough_ok();
 }
 
+// The pitch of the blade that follows the last demand best: one with a fault does not lead the others.
+static double led_pitch(const bough_discon_sensed *x, double demand) {
+    double pitch = x->pitch[0];
+    for (int b = 1; b < x->n_blade; b++)
+        if (fabs(x->pitch[b] - demand) < fabs(pitch - demand)) pitch = x->pitch[b];
+    return pitch;
+}
+
 static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, bough_discon_demand *demand) {
     if (idles(l)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
@@ -363,7 +368,7 @@ static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, 
         return bough_ok();
     }
     bough_controller_state *law = &l->now.law;
-    bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
+    bough_controller_advance(&l->control->law, x->generator_speed, led_pitch(x, law->pitch), x->step, law);
     demand->torque = law->torque;
     for (int b = 0; b < BLADES; b++) demand->pitch[b] = law->pitch;
     return bough_ok();

@@ -31,8 +31,8 @@ static double surplus(search *x, double speed, double pitch) {
     bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &q, &v);
     bough_assembly_states(s->assembly, x->state);
     s->tree->initial[v] = x->state[v] = speed;
-    bough_equilibrium_set_state(s, 0, x->state);
     bough_control_link_stand(s->control, speed, pitch);
+    bough_equilibrium_set_state(s, 0, x->state);
     x->status = bough_simulation_equilibrium(s, 0, 0, NULL);
     if (!bough_is_ok(&x->status)) return (double)NAN;
     double torque = bough_aero_link_data(s->aero, &factor)->torque;

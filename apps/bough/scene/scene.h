@@ -407,7 +407,7 @@ typedef struct bough_scene_event {
     int blade;             // number of the blade with the fault, from 1; 0: no blade
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
     int body;              // its index
-    double angle;          // final pitch or yaw [rad]; of stops 0: 90 degrees ("auto")
+    double angle;          // final pitch or yaw [rad]
     double rate;           // of the motion to the angle [rad/s]; 0: that of the kind ("auto")
 } bough_scene_event;
 

@@ -110,7 +110,7 @@ static const bough_schema input_schema = {.name = "the inputs", KEYS(
     SENSED("rotor_speed", ROTOR_SPEED, "omega_rotor", "of the hub [rad/s]"),
     SENSED("torque", TORQUE, "T", "of the generator, on the fast shaft [N m]"),
     SENSED("power", POWER, "P", "electrical [W]"),
-    SENSED("wind", WIND, "v", "at the hub, along the shaft [m/s]"),
+    SENSED("wind", WIND, "v", "undisturbed, at the hub, horizontal [m/s]"),
     SENSED("azimuth", AZIMUTH, "psi", "of blade 1 [rad]"),
     SENSED("yaw_error", YAW_ERROR, "gamma", "direction of the wind less the nacelle's [rad]"),
     {KEY(TEXTS, pitch), .count = 1, COUNT_AT(n_pitch), .example = "[beta1, beta2, beta3]",

@@ -141,8 +141,10 @@ static bool has_pitch_joint(const bough_scene_body *b) {
 
 static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     bough_scene_event *e = &s->control.event[i];
-    bool pitches = e->kind == BOUGH_SCENE_STOP || e->kind == BOUGH_SCENE_EMERGENCY_STOP ||
-                   e->kind == BOUGH_SCENE_PITCH_TO || e->blade > 0;
+    bool stops = e->kind == BOUGH_SCENE_STOP || e->kind == BOUGH_SCENE_EMERGENCY_STOP;
+    bool pitches = stops || e->kind == BOUGH_SCENE_PITCH_TO || e->blade > 0;
+    const bough_node *angle = bough_node_find(e->node, "angle");
+    if (stops && (!angle || strcmp(angle->text, "auto") == 0)) e->angle = BOUGH_PI / 2; // feathered
     bough_link_at(r, "control.events[%d]", i);
     if (pitches && s->turbine.n_blade > 0 && s->turbine.blade[0] >= 0 &&
         !has_pitch_joint(&s->body[s->turbine.blade[0]])) {

@@ -1,0 +1,84 @@
+#!/bin/sh
+# Controllers, their events and the wind that they see as a user meets them: test_control.sh PROGRAM SOURCE_FOLDER
+set -u
+bough=$1
+folder=$2
+. "$(dirname "$0")/scratch.sh"
+
+# last CHANNEL: its last value in out/.
+last() {
+    awk -v channel="$1" '/^ *Time/ { for (i = 1; i <= NF; i++) if ($i == channel) at = i } { last = $at } END { print last }' \
+        out/channels.out
+}
+
+# is CHANNEL VALUE TOLERANCE: the last value of the channel.
+is() {
+    last "$1" | awk -v want="$2" -v by="$3" '{ exit !($1 - want <= by && want - $1 <= by) }' ||
+        fail "$said: $1 is $(last "$1") at the end, not $2"
+}
+
+cat >rotor.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 20 s, macro_step: 20 ms, error_estimate: none}
+turbine:
+  blades: 3
+  tower_height: 100 m
+  overhang: 5 m
+  hub_radius: 2 m
+  pitch: controlled
+  speed: 12 rpm
+  hub: {mass: 1000 kg, inertia: [3e7, 2e7, 2e7]}
+  nacelle: {mass: 1 t}
+  blade:
+    fidelity: rigid
+    rod: {length: 50 m, segments: 8, stiffness: [1e9, 1e9, 1e10, 1e9, 1e9, 1e9], mass: [1, 0, 0, 1e-3, 1e-3, 0]}
+loads: [{joint: hub, torque: 5 MN m}]
+control: {kind: variable-speed}
+EOF
+
+# Whichever blade of a symmetric rotor has the fault, the others go on.
+for blade in 1 2; do
+    expect 0 run rotor.yaml --out out --quiet --set "control.events=[{kind: pitch-stuck, blade: $blade, at: 2 s}]"
+    is BldPitch$blade 2.5099 1e-3
+    is BldPitch$((3 - blade)) 52.376 1e-2
+    is BldPitch3 52.376 1e-2
+done
+
+# A stop pitches to its angle, whatever its sign.
+for angle in -60 0 20 auto; do
+    unit=' deg' final=$angle
+    [ "$angle" = auto ] && unit='' final=90
+    expect 0 run rotor.yaml --out out --quiet --set "control.events=[{kind: emergency-stop, at: 2 s, angle: $angle$unit}]"
+    is BldPitch2 "$final" 1e-6
+done
+
+# A steady operation above rated wind with rigid blades, whose pitch alone changes the air.
+expect 0 run "$folder/apps/turbine/power.yaml" --out out --quiet --set 'bodies[3-5].fidelity=rigid' \
+    --set simulation.initial=operation --set aero.ramp=null --set 'aero.wind={kind: uniform, speed: 14 m/s}' \
+    --set 'simulation.duration=0.2 s'
+is RotSpeed 12.1 0.1
+
+# A wind that veers through north turns the shorter way.
+printf '0 10 350 0 0 0 0 0\n1 10 10 0 0 0 0 0\n' >north.wnd
+expect 0 run "$folder/tests/data/scenes/example-turbine.yaml" --out out --quiet --set 'simulation.duration=0.5 s' \
+    --set "aero.wind={kind: wnd, file: $PWD/north.wnd, reference_height: 20 m, reference_length: 10 m}"
+is Wind1VelX 10 1e-3
+
+# Wind from behind is the mirror image of that from the front, for a rotor of symmetric, untwisted blades.
+cat >polars.yaml <<'EOF'
+polars:
+  - name: symmetric
+    table: {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], [-135, 1, 1, 0], [-90, 0, 2, 0], [-45, -1, 1, 0], [0, 0, 0, 0],
+            [45, 1, 1, 0], [90, 0, 2, 0], [135, -1, 1, 0], [180, 0, 0, 0]]}
+EOF
+echo 'stations: {columns: [span, twist deg, chord, polar], rows: [[0, 0, 4, symmetric], [15, 0, 3, symmetric],
+    [30, 0, 2, symmetric], [45, 0, 1, symmetric], [50, 0, 1, symmetric]]}' >blade.yaml
+for direction in 30 150; do
+    expect 0 run rotor.yaml --out out --quiet --set control=null --set turbine.pitch=null --set turbine.speed=null --set loads=null \
+        --set 'turbine.hub.joint={motion: {speed: 12 rpm}}' --set 'simulation.duration=0.2 s' --set simulation.initial=equilibrium \
+        --set "aero={blade: blade.yaml, polars: polars.yaml, hub_radius: 2 m, induction: {skew: pitt-peters},
+            wind: {kind: uniform, speed: 9, direction: $direction deg}}"
+    last RtAeroFxh | tr -d - >>thrusts
+done
+[ "$(uniq thrusts | wc -l)" -eq 1 ] || fail "$said: a thrust of $(cat thrusts)"
+[ $failures -eq 0 ]
