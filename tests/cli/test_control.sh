@@ -58,6 +58,22 @@ expect 0 run "$folder/apps/turbine/power.yaml" --out out --quiet --set 'bodies[3
     --set 'simulation.duration=0.2 s'
 is RotSpeed 12.1 0.1
 
+# The error at an emergency stop, whose sudden pitch the air does not expect, is stated within a factor of 3.
+stop() {
+    out=$1
+    shift
+    expect 0 run "$folder/apps/turbine/power.yaml" --out "$out" --quiet --set 'bodies[3-5].fidelity=rigid' --set aero.ramp=null \
+        --set simulation.initial=operation --set 'simulation.duration=2 s' --set 'simulation.output.interval=20 ms' \
+        --set 'control.rate=50' --set 'control.events=[{kind: emergency-stop, at: 1 s}]' "$@"
+}
+stop out --set simulation.error_estimate=companion
+stop fine --set 'simulation.macro_step=2.5 ms' --set 'aero.rate=400 Hz' --set simulation.accuracy=1e-4 --set simulation.coupling=null \
+    --set simulation.master=null --set simulation.error_estimate=none
+error=$("$bough" diff out fine | awk '$1 == "blade1Trq" { print $2 }')
+sed -n 's/^ *"blade1Trq": \([0-9.e+-]*\),*$/\1/p' out/summary.json | head -n 1 |
+    awk -v error="$error" '{ found = 1; exit !(3 * $1 > error && error > 0) } END { if (!found) exit 1 }' ||
+    fail "$said: blade1Trq errs by $error"
+
 # A wind that veers through north turns the shorter way.
 printf '0 10 350 0 0 0 0 0\n1 10 10 0 0 0 0 0\n' >north.wnd
 expect 0 run "$folder/tests/data/scenes/example-turbine.yaml" --out out --quiet --set 'simulation.duration=0.5 s' \

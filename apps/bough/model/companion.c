@@ -1,6 +1,7 @@
 #include "apps/bough/model/companion.h"
 
 #include "apps/bough/model/aero_link.h"
+#include "apps/bough/model/control_link.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/model/validity.h"
@@ -324,6 +325,7 @@ static double reach(const bough_companion *c) {
     return 2 * (scene->aero.node ? fmax(step, 1 / scene->aero.rate) : step);
 }
 
+enum { EXPECTED = 3 };               // samples of the air by which the next is expected
 enum { SPACING = 3 };                // macro steps from corner to corner, the largest mean of close ones
 enum { COUNTED = 32 };               // macro steps after which the counts begin again
 static const double few_steps = 1.5; // of the integrator in each step of the run
@@ -397,13 +399,21 @@ static void pass_jumps(bough_companion *c) {
     }
 }
 
+// The air expects blades where their last three samples lead, so that it errs after a sudden change of their
+// pitch's rate, and that of the companion, whose samples are the control's, alike.
+static bool pitches_suddenly(const bough_simulation *s) {
+    if (!s->aero || !s->control) return false;
+    double since = s->master->time - bough_control_link_sudden(s->control);
+    return since <= (EXPECTED + 1) / s->scene->aero.rate;
+}
+
 static void compare(bough_companion *c) {
     // of two rates the lower one holds its samples longer
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     const bough_companion_row *row = &c->row[c->present];
     const bool held[] = {
         [BOUGH_BY_AIR] = rarer && !row->air_sampled, [BOUGH_BY_CONTROL] = rarer && !row->sampled};
-    bool resolved = missed_air(c->run) <= most_missed;
+    bool resolved = missed_air(c->run) <= most_missed && !pitches_suddenly(c->run);
     pass_jumps(c);
     // steps of any length meet a contact at a chance time, so that both solutions err alike
     if (c->ratio < 1 && strikes(c->run)) c->ratio = 1;

@@ -21,7 +21,8 @@ typedef struct memory {
     double torque;                          // of the generator, reached at the next sample [N m]
     double speed;                           // of the generator at the last sample [rad/s]
     bough_motion_point pitch_joint[BLADES]; // reached at the next sample
-    double nacelle[4];                      // motion of the nacelle at the last sample: see nacelle_motion
+    double sudden;     // last time at which the rate of a pitch changed by more than `least_sudden` [s]
+    double nacelle[4]; // motion of the nacelle at the last sample: see nacelle_motion
     double started;
 } memory;
 
@@ -374,6 +375,10 @@ static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, 
     return bough_ok();
 }
 
+static const double least_sudden = 1 * BOUGH_DEGREE; // [rad/s]
+
+double bough_control_link_sudden(const bough_control_link *link) { return link->now.sudden; }
+
 // Moves a blade towards the demanded pitch, at most at the largest rate.
 static void steer(bough_control_link *l, int b, double t, double step, double pitch) {
     bough_simulation *s = l->simulation;
@@ -384,6 +389,7 @@ static void steer(bough_control_link *l, int b, double t, double step, double pi
     to.v = (to.q - from.q) / step;
     to.a = 0;
     bough_tree_steer(s->tree, body, t, step, from, to);
+    if (fabs(to.v - from.v) > least_sudden) l->now.sudden = t;
     l->now.pitch_joint[b] = to;
 }
 
@@ -433,6 +439,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     l->control = &scene->control;
     l->load = simulation->tree->n_loads - 1;
     l->n_blade = scene->turbine.n_blade;
+    l->now.sudden = -HUGE_VAL;
     l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion[0].node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)
         l->now.pitch_joint[b] = bough_simulation_joint_point(simulation, blade_body(l, b));

@@ -17,6 +17,9 @@ bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *li
 // Whether it pitches the blades.
 bool bough_control_link_pitches(const bough_control_link *link);
 
+// The last time at which the rate of a pitch changed suddenly, by more than 1 deg/s at a sample [s].
+double bough_control_link_sudden(const bough_control_link *link);
+
 // Sets pitch joints and generator torque to steady operation at a rotor speed [rad/s] and a pitch [rad], from
 // which the law starts.
 void bough_control_link_stand(bough_control_link *link, double speed, double pitch);
