@@ -40,7 +40,7 @@ typedef struct account {
 } account;
 
 struct bough_monitor {
-    const char *advice; // another scheme to try, or ""
+    char advice[64]; // another scheme to try, or ""
     int n_group;
     group *group;
     long steps;
@@ -64,11 +64,20 @@ static void make_groups(bough_monitor *m, const bough_assembly *a) {
     }
 }
 
+// What belongs to the remedy of one system of all members: another solver, where the present one suits fewer
+// states.
+static const char *solver_advice(const bough_coupling *c) {
+    int most = bough_integrator_find(c->options.integrator.kind)->most_states;
+    return most > 0 && c->assembly->n_state > most ? " with master.solver: automatic" : "";
+}
+
 bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling) {
     const bough_assembly *a = coupling->assembly;
     size_t n_input = (size_t)a->n_input;
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
-    m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: " BOUGH_SCHEME_DEFAULT;
+    if (!a->opaque && !coupling->scheme->one_system)
+        snprintf(m->advice, sizeof m->advice, " or scheme: " BOUGH_SCHEME_DEFAULT "%s",
+                 solver_advice(coupling));
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     bough_arena_each(arena, n_input, &m->start, &m->input);
     m->state = bough_arena_doubles(arena, (size_t)a->n_state);
@@ -327,10 +336,12 @@ static bough_stability_advice judge_again(const bough_monitor *m, bough_coupling
 // a mesh that is too coarse. An opaque member cannot be part of one system.
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
     if (!advice->unstable) {
-        snprintf(text, ADVICE, "; try %s",
+        bool coupled = !c->scheme->one_system && !c->assembly->opaque;
+        snprintf(text, ADVICE, "; try %s%s",
                  c->scheme->one_system ? "damping of flexible bodies, more segments or another master.rtol"
                  : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
-                                       : "scheme: " BOUGH_SCHEME_DEFAULT);
+                                       : "scheme: " BOUGH_SCHEME_DEFAULT,
+                 coupled ? solver_advice(c) : "");
         return;
     }
     double factor = exp(advice->now.growth * (c->t1 - c->t0));
@@ -340,7 +351,7 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
     if (advice->macro_step > 0) {
         n += snprintf(text + n, (size_t)(ADVICE - n), "macro_step: %.9g s or ", advice->macro_step);
     }
-    snprintf(text + n, (size_t)(ADVICE - n), "scheme: " BOUGH_SCHEME_DEFAULT);
+    snprintf(text + n, (size_t)(ADVICE - n), "scheme: " BOUGH_SCHEME_DEFAULT "%s", solver_advice(c));
 }
 
 bough_status bough_monitor_explain(const bough_monitor *m, bough_coupling *c,

@@ -75,6 +75,38 @@ advised=$(sed -n 's/^warning: .* try rod.segments: \([0-9]*\)$/\1/p' stdout)
 run 0 '^largest errors: ' coarse.yaml --set "bodies[0].rod.segments=$advised"
 ! grep -q '^warning' stdout || fail "$advised segments: $(cat stdout)"
 
+# Below the bound, too, the remedy acts on the cause: neither segments nor the accuracy act on a coupling by named
+# steps, nor does the accuracy on the steps of generalised-alpha.
+cat >stop.yaml <<'END'
+gravity: [0, 0, -9.81]
+simulation: {duration: 0.8 s, macro_step: 5 ms, coupling: {scheme: ramp}}
+bodies:
+  - {name: h, fidelity: rigid, mass: 0.3, inertia: [0.02, 0.02, 0.02],
+     joint: {kind: revolute, axis: y, parent: ground, angle: 60 deg, stop: [-60 deg, 100 deg], stop_stiffness: 2e3}}
+  - {name: ra, fidelity: rod, joint: {kind: fixed, parent: h},
+     rod: {length: 1, segments: 12, stiffness: [1e5, 1e5, 3e5, 60, 60, 40], mass: [0.8, 0, 0, 1e-4, 1e-4, 0],
+           damping: [3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3]}}
+END
+run 0 '^warning: hVel errs .* (simulation.accuracy) try scheme: monolithic$' stop.yaml
+run 0 '^largest errors: ' stop.yaml --set "$coupled"
+! grep -q '(simulation.accuracy)' stdout || fail "the remedy of a coupling: $(cat stdout)"
+cat >double.yaml <<'END'
+simulation: {duration: 10 s, macro_step: 10 ms, master: {solver: generalized-alpha, rho: 1}}
+bodies:
+  - {name: a, fidelity: rigid, mass: 1, inertia: [0.01, 0.01, 0.01], centre_of_mass: [0, 0, 0.3],
+     joint: {kind: revolute, parent: ground, axis: y, angle: 120 deg}}
+  - {name: b, fidelity: rigid, mass: 1, inertia: [0.02, 0.02, 0.02], centre_of_mass: [0, 0, 0.3],
+     joint: {kind: revolute, parent: a, axis: y, stiffness: 20, damping: 0.1, placement: [move z 0.6]}}
+END
+run 0 '(simulation.accuracy) try master.step: .* s or master.solver: rosenbrock$' double.yaml
+advised=$(sed -n 's/.* try master.step: \(.* s\) or .*/\1/p' stdout)
+run 0 '^largest errors: ' double.yaml --set "simulation.master.step=$advised"
+! grep -q '(simulation.accuracy)' stdout || fail "steps of $advised: $(cat stdout)"
+
+# One system of all bodies may have too many states for the solver that the scene names.
+run 3 'try .*scheme: monolithic with master.solver: automatic$' stop.yaml --set 'simulation.master.solver=radau5' \
+    --set 'bodies[ra].rod.segments=40' --set 'simulation.coupling.scheme=frozen' --set 'simulation.macro_step=20 ms'
+
 # The error belongs to the run: it is the same whatever is recorded, to the last bit.
 turbine=$source/tests/data/scenes/example-turbine.yaml
 errors() {

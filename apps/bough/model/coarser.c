@@ -379,11 +379,10 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     return all;
 }
 
-// Whether the rods have more states than the solver's dense matrices allow, as those of a finer mesh may.
-static bool is_too_large(const bough_scene *to) {
-    int states = 0, most = bough_integrator_find(to->simulation.master.solver)->most_states;
-    for (int i = 0; i < to->n_body; i++) {
-        const bough_scene_body *b = &to->body[i];
+bool bough_coarser_is_too_large(const bough_scene *scene) {
+    int states = 0, most = bough_integrator_find(scene->simulation.master.solver)->most_states;
+    for (int i = 0; i < scene->n_body; i++) {
+        const bough_scene_body *b = &scene->body[i];
         if (b->fidelity == BOUGH_SCENE_ROD) states += BOUGH_ROD_STATES * b->rod.n_segment * b->repeat;
     }
     return most > 0 && states > most;
@@ -393,7 +392,7 @@ static void make_one_system(bough_scene *to) {
     bough_scene_simulation *x = &to->simulation;
     x->step_control.tolerance = 0;
     if (is_one_system(to)) {
-        if (has_fixed_steps(to) || is_too_large(to)) x->master.solver = BOUGH_AUTOMATIC;
+        if (has_fixed_steps(to) || bough_coarser_is_too_large(to)) x->master.solver = BOUGH_AUTOMATIC;
         return;
     }
     bough_scene_solver sub_solvers = all_sub_solvers(to);

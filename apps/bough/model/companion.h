@@ -57,6 +57,10 @@ double bough_coarser_time_ratio(const bough_scene *scene);
 // Relative tolerance of the whole's integrator, the loosest of the sub-solvers beside another coupling.
 double bough_scene_loosest_rtol(const bough_scene *scene);
 
+// Whether the rods have more states than the dense matrices of master.solver allow, as those of a finer mesh
+// or of all bodies as one system may.
+bool bough_coarser_is_too_large(const bough_scene *scene);
+
 // Whether the tolerance is so loose that the coarser copy has a tighter one.
 bool bough_coarser_is_loose(const bough_scene *scene);
 

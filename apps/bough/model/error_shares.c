@@ -71,6 +71,10 @@ static void compare(const bough_channels *channels, const double *a, const doubl
     }
 }
 
+static bool is_one_system(const bough_scene *scene) {
+    return bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
+}
+
 static bool has_part(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_TIME) return true;
     if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
@@ -110,12 +114,12 @@ static bool is_by_mesh(const finding *x, double much) {
 // proportion.
 static bool is_by_mesh_early(finding *x) {
     const bough_scene *scene = x->companion->run->scene;
-    const bough_scheme *scheme = bough_scheme_at(scene->simulation.coupling.scheme);
     bough_error_share *mesh = &x->shares->share[BOUGH_SHARE_MESH];
     double own = largest_of(x->companion, mesh->largest),
            whole = largest_of(x->companion, x->companion->error);
     double bound = scene->simulation.error_bound, grows = fmax(whole / own, 1);
-    if (has_part(scene, BOUGH_SHARE_AIR) || !scheme->one_system || own <= bound || !is_by_mesh(x, hardly_yet))
+    if (has_part(scene, BOUGH_SHARE_AIR) || !is_one_system(scene) || own <= bound ||
+        !is_by_mesh(x, hardly_yet))
         return false;
     if (grows * largest_of(x->companion, mesh->others) > bound) return false;
     for (int i = 0; i < x->shares->n_channel; i++) {
@@ -386,9 +390,9 @@ bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, boo
 enum { ADVICE = 160 };
 static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
 static const double few_order = 1.5;                               // of a mesh of few segments
-enum { FEW = 9, MOST_TIMES = 10 };     // beyond this multiple of the segments the order is no guide
-static const double most_halvings = 6; // of the macro step that are worth trying
-static const double margin = 1.1;      // of the settings that are proposed
+enum { FEW = 9, MOST_TIMES = 10 };    // beyond this multiple of the segments the order is no guide
+static const double margin = 1.1;     // of the settings that are proposed
+static const double shortened = 0.75; // fixed steps: large errors fall less than at their order
 
 // The number of segments that divides the mesh's error by a factor, if all rods have the same; otherwise the
 // multiple.
@@ -418,20 +422,22 @@ static void advise_air(const bough_scene *scene, double factor, char text[ADVICE
         snprintf(text + n, (size_t)(ADVICE - n), " with macro_step: %.4g s", 1 / rate);
 }
 
+// All bodies as one system, by a solver that suits it. Shorter macro steps are no sure remedy: beside a light
+// carrier the error falls at a lower order than the scheme has.
+static int advise_one_system(const bough_scene *scene, char *text, size_t size) {
+    return snprintf(text, size, "scheme: %s%s", BOUGH_SCHEME_DEFAULT,
+                    bough_coarser_is_too_large(scene) ? " with master.solver: automatic" : "");
+}
+
 static void advise_time(const bough_scene *s, double factor, char text[ADVICE]) {
     const bough_scene_simulation *x = &s->simulation;
-    const bough_scheme *scheme = bough_scheme_at(x->coupling.scheme);
     double shorter = pow(factor, -1 / time_order) / margin;
-    if (!scheme->one_system) {
-        double halvings =
-            ceil(log2(margin * factor) / bough_scheme_defect_order(scheme, &x->coupling.options));
-        int n = snprintf(text, ADVICE, "scheme: %s", BOUGH_SCHEME_DEFAULT);
-        if (halvings <= most_halvings)
-            snprintf(text + n, (size_t)(ADVICE - n), " or macro_step: %.9g s",
-                     x->macro_step * exp2(-halvings));
+    if (!is_one_system(s)) {
+        advise_one_system(s, text, ADVICE);
     } else if (x->master.solver == BOUGH_GENERALIZED_ALPHA) {
         double step = x->master.step > 0 ? fmin(x->master.step, x->macro_step) : x->macro_step;
-        snprintf(text, ADVICE, "master.step: %.2g s or master.solver: rosenbrock", shorter * step);
+        snprintf(text, ADVICE, "master.step: %.2g s or master.solver: rosenbrock",
+                 shortened * shorter * step);
     } else {
         int n = snprintf(text, ADVICE, "master.rtol: %.1g", 0.5 * x->master.rtol / fmin(factor, 1e3));
         if (x->master.step > 0)
@@ -448,8 +454,7 @@ static void advise(const bough_scene *scene, int kind, double factor, char text[
 static const char *cause_name(const bough_scene *scene, int kind) {
     if (kind == BOUGH_SHARE_MESH) return "the mesh";
     if (kind == BOUGH_SHARE_AIR) return "the sampling of the air";
-    bool one_system = bough_scheme_at(scene->simulation.coupling.scheme)->one_system;
-    return one_system ? "the integrator's steps" : "the coupling or the sub-solvers' steps";
+    return is_one_system(scene) ? "the integrator's steps" : "the coupling or the sub-solvers' steps";
 }
 
 static int describe(const bough_companion *c, const bough_error_verdict *v, char *text, size_t size) {
@@ -501,7 +506,7 @@ static void find_parts(const bough_scene_expectation *expected, double factor, d
 }
 
 // The settings that reduce each part to half the accuracy: keys that the scene names, or else the accuracy.
-static void advise_for_accuracy(const bough_scene *scene, double factor, char *text, size_t size) {
+static void advise_settings(const bough_scene *scene, double factor, char *text, size_t size) {
     double part[BOUGH_SHARES], accuracy = 1;
     int n = 0;
     bough_scene_expectation expected = bough_scene_expect_errors(scene);
@@ -519,6 +524,14 @@ static void advise_for_accuracy(const bough_scene *scene, double factor, char *t
     if (accuracy == 1) return;
     snprintf(text + n, size - (size_t)n, "%ssimulation.accuracy: %.1g", n > 0 ? " and " : "",
              accuracy / margin * scene->simulation.accuracy);
+}
+
+// No setting but the scheme follows from the error of a coupling, which is not known beside the others.
+static void advise_for_accuracy(const bough_scene *scene, double factor, char *text, size_t size) {
+    if (is_one_system(scene))
+        advise_settings(scene, factor, text, size);
+    else
+        advise_one_system(scene, text, size);
 }
 
 static void warn_of_error(const bough_companion *c, const bough_error_verdict *v,
