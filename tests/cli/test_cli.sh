@@ -250,6 +250,10 @@ checks() {
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
     has ../stdout '^coupling: extrapolated, order 2 '
     has ../stdout '^macro_steps: 4$'
+    # as short as the default macro step of such a run
+    expect 0 check "$bar" --set 'simulation.duration=2 us' --set 'simulation.macro_step=20 ns'
+    has ../stdout '^macro_steps: 100$'
+    refused 'simulation.duration: must be >= 1e-7 s' check "$bar" --set 'simulation.duration=99 ns'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: iterated, accelerator: aitken}' \
         --set 'simulation.coupling.tolerance=1e-5'
     has ../stdout '^coupling: iterated, order 1, accelerator aitken, tolerance 1e-05 in at most 30 '

@@ -101,13 +101,13 @@ static const bough_schema step_control_schema = {.name = "the step control", KEY
 
 #define FILLS bough_scene_simulation
 static const bough_schema simulation_schema = {.name = "the simulation", KEYS(
-    {KEY(NUMBER, duration), UNIT(TIME), .range = "> 0", .required = true, .example = "40 s",
+    {KEY(NUMBER, duration), UNIT(TIME), .range = ">= 1e-7", .required = true, .example = "40 s",
      .help = "simulated time, a multiple of the macro step"},
     {KEY(NUMBER, accuracy), .range = "[1e-7, 0.1]", .fallback = "0.005", .example = "0.001",
      .help = "largest error of a channel that the run aims at, relative to the channel's range. "
              "Tolerances, steps, the rate of the air and segments that the scene does not name "
              "follow from it"},
-    {KEY(NUMBER, macro_step), UNIT(TIME), .range = "[1e-7, 1e4]", .example = "20 ms",
+    {KEY(NUMBER, macro_step), UNIT(TIME), .range = "[1e-9, 1e4]", .example = "20 ms",
      .help = "time between exchanges; default from simulation.accuracy, such that the duration and "
              "the periods of output, air and control are multiples"},
     {KEY(MAPPING, step_control), .of = &step_control_schema,

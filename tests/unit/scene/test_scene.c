@@ -299,7 +299,7 @@ TEST(help_covers_scene_and_files) {
     bough_scene_help(stream);
     fclose(stream);
     const char *const lines[] = {
-        "\n  - macro_step: (number in s, [1e-7, 1e4]; e.g. 20 ms)\n",
+        "\n  - macro_step: (number in s, [1e-9, 1e4]; e.g. 20 ms)\n",
         "\n    - scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
         "monolithic; e.g. frozen)\n",
         "\n    - axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"

@@ -67,7 +67,7 @@ TEST(bad_replacements_are_refused) {
                    "--set: error: a..b: expected a key\n"
                    "--set: error: bodies[0]x: expected '.' or '['\n"
                    "--set: error: title: expected ',' or ']' to end the list\n"
-                   "--set: error: simulation.macro_step: must be in [1e-7, 1e4] s, got '0'\n"
+                   "--set: error: simulation.macro_step: must be in [1e-9, 1e4] s, got '0'\n"
                    "--set: error: simulation: unknown key 'thread' (did you mean 'threads'?)\n"
                    "--set: error: bodies[3].pitch: expected an angle with its unit, as '5 deg', "
                    "got '5 kg': the unit 'kg' does not fit\n");
