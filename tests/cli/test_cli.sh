@@ -442,6 +442,10 @@ shown() {
     sed -n 's/.*stroke-width.* d="M.*L\(.*\)".*/\1/p' out/shape.svg | tail -n 1 | cmp -s - ../straight ||
         fail "$said: the end of the bar: $(cat ../straight)"
     [ "$(grep -c '<path stroke-width' out/shape.svg)" -eq 40 ] || fail "$said: a line for each segment"
+    for time in 21ms -1s; do
+        expect 2 report out --at "$time"
+        has ../stderr '^bough: error: --at: out/frames.pvd holds frames from 0 s to 0.02 s, not '
+    done
     expect 2 report out --at '1 kg'
     has ../stderr "--at expects a time (in s, or with a unit, as '20 ms'), got '1 kg'"
     touch out/frames/mine.vtp
@@ -461,6 +465,8 @@ shown() {
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --out out
     missing out/frames
     missing out/frames.pvd
+    expect 2 report out --at 10ms
+    has ../stderr '^bough: error: --at: out holds no frames; run with simulation.output.frames$'
     rm -r out
     refused 'holds no results' report .
     refused "there is no folder 'nowhere'" report nowhere

@@ -25,7 +25,8 @@ bough_report_part bough_report_frames;
 // -- the shape at one time ------------------------------------------------------------------------
 
 // Draws the stored frame that is nearest to this time [s], the last one for HUGE_VAL, to scale, coloured by
-// the section moment: shape.svg in the folder. Nothing is drawn where there is no frame.
+// the section moment: shape.svg in the folder. Nothing is drawn where there is no frame; BOUGH_INVALID where
+// the time is given and no frame is stored, or none so early or so late.
 bough_status bough_report_shape(bough_arena *arena, const char *folder, double time, bool *drawn);
 
 // Opens folder/name; NULL when it does not exist.

@@ -90,13 +90,19 @@ static bough_status find_frame(bough_arena *arena, const char *folder, double ti
     bough_status status = bough_report_open(folder, "frames.pvd", &list);
     if (!bough_is_ok(&status) || !list) return status;
     char name[NAME], nearest[NAME] = "";
+    double first = HUGE_VAL, last = -HUGE_VAL;
     for (double t; next_frame(list, &t, name);) {
+        first = fmin(first, t), last = fmax(last, t);
         bool nearer = time < HUGE_VAL ? fabs(t - time) < fabs(frame->time - time) : t > frame->time;
         if (nearest[0] && !nearer) continue;
         frame->time = t;
         memcpy(nearest, name, sizeof nearest);
     }
     fclose(list);
+    if (nearest[0] && time < HUGE_VAL && !(time >= first && time <= last))
+        return bough_fail(BOUGH_INVALID,
+                          "--at: %.200s/frames.pvd holds frames from %.6g s to %.6g s, not %.6g s", folder,
+                          first, last, time);
     return nearest[0] ? read_frame(arena, folder, nearest, frame) : status;
 }
 
@@ -286,6 +292,9 @@ bough_status bough_report_shape(bough_arena *arena, const char *folder, double t
     stored_frame frame;
     *drawn = false;
     BOUGH_TRY(find_frame(arena, folder, time, &frame));
+    if (frame.n_line == 0 && time < HUGE_VAL)
+        return bough_fail(BOUGH_INVALID, "--at: %.200s holds no frames; run with simulation.output.frames",
+                          folder);
     if (frame.n_line == 0) return bough_ok();
     *drawn = true;
     return bough_folder_write(folder, "shape.svg", draw, &frame);
