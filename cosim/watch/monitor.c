@@ -337,11 +337,14 @@ static bough_stability_advice judge_again(const bough_monitor *m, bough_coupling
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
     if (!advice->unstable) {
         bool coupled = !c->scheme->one_system && !c->assembly->opaque;
-        snprintf(text, ADVICE, "; try %s%s",
-                 c->scheme->one_system ? "damping of flexible bodies, more segments or another master.rtol"
-                 : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
-                                       : "scheme: " BOUGH_SCHEME_DEFAULT,
-                 coupled ? solver_advice(c) : "");
+        snprintf(
+            text, ADVICE, "; try %s%s",
+            c->scheme->one_system
+                ? "damping of flexible bodies, more segments or another master.rtol; a slack rope that snaps "
+                  "taut kinks within sqrt(EI/tension): give it a larger bending stiffness EI"
+            : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
+                                  : "scheme: " BOUGH_SCHEME_DEFAULT,
+            coupled ? solver_advice(c) : "");
         return;
     }
     double factor = exp(advice->now.growth * (c->t1 - c->t0));

@@ -13,7 +13,7 @@ typedef struct outcome {
     double value[STEPS][MOST]; // at multiples of 20 ms
     double error[MOST];        // estimate
     bool compared;
-    char reason[BOUGH_COMPANION_REASON];
+    char reason[BOUGH_MESSAGE];
 } outcome;
 
 static inline outcome *run_for(const char *path, int steps, const char *const *sets) {

@@ -31,7 +31,7 @@ static void take_record(bough_companion *c, bough_arena *arena) {
 }
 
 static void give_up(bough_companion *c, const char *reason) {
-    snprintf(c->reason, sizeof c->reason, "%.300s", reason);
+    snprintf(c->reason, sizeof c->reason, "%s", reason);
     c->from = c->run->master->time;
 }
 

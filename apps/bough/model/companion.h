@@ -151,8 +151,6 @@ enum { BOUGH_RECORD_TIME, BOUGH_RECORD_ERROR, BOUGH_RECORD_HELD, BOUGH_RECORD_RU
 
 // -- the companion --------------------------------------------------------------------------------
 
-enum { BOUGH_COMPANION_REASON = 320 };
-
 // Counts of a run.
 typedef struct bough_run_counts {
     long macro_steps;
@@ -181,27 +179,27 @@ typedef struct bough_companion {
     const bough_channels *channels; // of the run
     double ratio;                   // error of the run over the difference: 1/Q of theory (71)
     double ratio_held;              // the same for a channel of which the companion holds an older sample
-    char reason[BOUGH_COMPANION_REASON]; // why errors are not or no longer known; "": they are known
-    double from;                         // time from which they are not known [s]
-    double motion;                       // largest range of all motion, or value up to 1, in SI units
-    double rest;                         // motion of a scene at rest; 0: it moves
-    double arm;                          // length of the longest rod [m]; 0: there is none
-    long compared;                       // times
-    bough_run_counts counted;            // of the run, from where steps and corners are counted
-    long corners;                        // so far
-    double corner;                       // the last of them [s]
-    int jump;                            // row from which the wind jumps next; −1: never
-    double earlier;                      // work of both before a copy was restored
-    double *value;                       // (channels->count) of the run at the last of them
-    double *before;                      // (channels->count) of the run at the comparison before
-    double *error;                       // (channels->count) largest so far, in the channels' units
-    double *least;                       // (channels->count) beside the finer solution
-    double *grown;                       // (channels->count) when that grew last [s]
-    double *low, *high;                  // (channels->count) range of the run
-    double *other_low, *other_high;      // (channels->count) of the companion
-    double *noticed;                     // (channels->count) when the error first passed the accuracy [s]
-    bool flutters;                       // its blades flutter, those of the run do not
-    bough_status status;                 // of its last step
+    char reason[BOUGH_MESSAGE];     // why errors are not or no longer known; "": they are known
+    double from;                    // time from which they are not known [s]
+    double motion;                  // largest range of all motion, or value up to 1, in SI units
+    double rest;                    // motion of a scene at rest; 0: it moves
+    double arm;                     // length of the longest rod [m]; 0: there is none
+    long compared;                  // times
+    bough_run_counts counted;       // of the run, from where steps and corners are counted
+    long corners;                   // so far
+    double corner;                  // the last of them [s]
+    int jump;                       // row from which the wind jumps next; −1: never
+    double earlier;                 // work of both before a copy was restored
+    double *value;                  // (channels->count) of the run at the last of them
+    double *before;                 // (channels->count) of the run at the comparison before
+    double *error;                  // (channels->count) largest so far, in the channels' units
+    double *least;                  // (channels->count) beside the finer solution
+    double *grown;                  // (channels->count) when that grew last [s]
+    double *low, *high;             // (channels->count) range of the run
+    double *other_low, *other_high; // (channels->count) of the companion
+    double *noticed;                // (channels->count) when the error first passed the accuracy [s]
+    bool flutters;                  // its blades flutter, those of the run do not
+    bough_status status;            // of its last step
 
     int n_row, present; // rows of the last bough_companion_step; that of the run's time, or the next one
     bough_companion_row row[BOUGH_COMPANION_ROWS];

@@ -11,7 +11,7 @@ const char *bough_error_share_name(bough_error_share_kind kind) {
 }
 
 static void unknown(bough_error_share *share, const char *why) {
-    snprintf(share->unknown, sizeof share->unknown, "%.150s", why);
+    snprintf(share->unknown, sizeof share->unknown, "%s", why);
 }
 
 // -- further runs ---------------------------------------------------------------------------------

@@ -59,9 +59,9 @@ typedef enum bough_error_share_kind {
 } bough_error_share_kind;
 
 typedef struct bough_error_share {
-    char unknown[160]; // why it is not known; "": it is known
-    double *largest;   // (n_channel) largest error of each channel in the run, in its unit
-    double *others;    // (n_channel) the same of all other parts
+    char unknown[BOUGH_MESSAGE]; // why it is not known; "": it is known
+    double *largest;             // (n_channel) largest error of each channel in the run, in its unit
+    double *others;              // (n_channel) the same of all other parts
 } bough_error_share;
 
 typedef struct bough_error_shares {
@@ -79,7 +79,7 @@ const char *bough_error_share_name(bough_error_share_kind kind);
 bough_status bough_error_shares_find(bough_arena *arena, bough_companion *c, bool (*stop)(void),
                                      bough_error_shares *shares);
 
-enum { BOUGH_ERROR_WARNING = 700 };
+enum { BOUGH_ERROR_WARNING = BOUGH_MESSAGE + 100 };
 
 // The error of a motion beside the bound [1]; 0: no bound. Above it BOUGH_FAILED, with channel, time, cause
 // and the setting that meets it, unless the mesh alone is the cause: then that is the warning. Else the
