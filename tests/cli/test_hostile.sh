@@ -74,7 +74,7 @@ refused 'expected at most 10000 bodies and 1000000 segments' check much.yaml
 
 # Numbers that nobody waits for.
 beam=example-beam.yaml
-for times in 'duration=1e15' 'macro_step=1e-9' 'macro_step=1e-300' 'macro_step=1e6' 'micro.step=1e6' \
+for times in 'duration=1e15' 'macro_step=1e-10' 'macro_step=1e-300' 'macro_step=1e6' 'micro.step=1e6' \
     'output.frames=1e-300' 'output.interval=1e-300'; do
     refused "simulation.${times%%=*}: " check $beam --set "simulation.$times"
 done
