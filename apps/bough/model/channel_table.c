@@ -128,7 +128,7 @@ static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
         SAME_XYZ("YawBrF", "p", "kN", "force of the nacelle on the tower's top, ", " axis of the top section"),
         SAME_XYZ("YawBrM", "p", "kN-m", "moment of the nacelle on the tower's top, ", " axis of the top section"))},
     [BOUGH_CHANNELS_AIR] = {"Air on a rotor, at the last aerodynamic sample", NULL, ROWS(
-        SAME("RtAeroFxh", "N", "thrust of the air on the rotor, along the hub's x"),
+        SAME("RtAeroFxh", "N", "thrust of the air on the blades, along the hub's x; without the drag of the hub"),
         SAME("RtAeroMxh", "N-m", "torque of the air on the rotor, about the hub's x"),
         SAME("RtAeroPwr", "W", "RtAeroMxh times the angular velocity of the hub about the shaft")), .sampled = BOUGH_BY_AIR},
     [BOUGH_CHANNELS_WIND] = {"Wind", NULL, ROWS(
@@ -147,7 +147,7 @@ static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
         SAME("AB{a}N{b}Cl", "-", "lift coefficient"),
         SAME("AB{a}N{b}Cd", "-", "drag coefficient"),
         SAME("AB{a}N{b}Cm", "-", "moment coefficient"),
-        SAME("AB{a}N{b}Fx", "N/m", "force per length normal to the rotor plane"),
+        SAME("AB{a}N{b}Fx", "N/m", "force per length normal to the coned, bent blade, in the plane of shaft and radius"),
         SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive where it drives the rotor")), .sampled = BOUGH_BY_AIR},
     [BOUGH_CHANNELS_GENERATOR] = {"Generator", NULL, ROWS(
         SAME("GenSpeed", "rpm", "speed of the generator: speed of the rotor's joint times the gear ratio"))},
