@@ -32,13 +32,15 @@ void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *moti
     wind = bough_scale(1. / (rotor->n_blade * rotor->n_station), wind);
     data->disk_wind = wind;
     data->disk_velocity = bough_scale(1. / (rotor->n_blade * rotor->n_station), velocity);
-    // mean wind along and across the shaft
+    // mean wind relative to the hub, along and across the shaft
+    wind = bough_sub(wind, motion->hub_velocity);
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
     scratch->skew = atan2(size, fabs(axial));
     // the flow along the shaft as the blades meet it
-    scratch->wake = wake_strength(rotor, data, axial - bough_dot(data->disk_velocity, motion->shaft));
+    bough_vec3 inflow = bough_sub(data->disk_wind, data->disk_velocity);
+    scratch->wake = wake_strength(rotor, data, bough_dot(inflow, motion->shaft));
     bool yawed = size > 1e-9 * fabs(axial);
     scratch->downwind = yawed ? bough_scale(1 / size, across) : bough_v3(0, 0, 0);
 }
@@ -82,7 +84,7 @@ static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *d
 static void remember(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
     bough_inflow_clock *clock = data->memory.clock;
     if (data->memory.station) {
-        double wind = bough_dot(data->disk_wind, motion->shaft);
+        double wind = bough_dot(bough_sub(data->disk_wind, motion->hub_velocity), motion->shaft);
         double radius = fmax(data->scratch->blade[0].radius[rotor->n_station - 1], 1e-3);
         double axial = mean_induction(rotor, data, wind);
         clock->tau = bough_inflow_time(&rotor->inflow, axial, radius, wind);

@@ -81,6 +81,7 @@ typedef struct bough_blade_motion {
 typedef struct bough_rotor_motion {
     double time;                     // [s]
     bough_vec3 hub;                  // where the blade-root axes meet the shaft, ground axes [m]
+    bough_vec3 hub_velocity;         // ground axes; the wake sees the wind relative to it [m/s]
     bough_vec3 shaft;                // unit vector, downwind, ground axes
     const bough_blade_motion *blade; // (n_blade)
 } bough_rotor_motion;

@@ -200,9 +200,10 @@ void BOUGH_AT_LEVEL(bough_rotor_approach)(const bough_rotor *rotor, const bough_
     meet_wind(rotor, motion, blade, r);
 }
 
-// The angle of the undisturbed wind at the hub and the shaft.
+// The angle of the shaft and the undisturbed wind relative to the hub.
 static double skew_of(const bough_rotor *rotor, const bough_rotor_motion *motion) {
     bough_vec3 wind = bough_wind_at(&rotor->wind, motion->hub, motion->time);
+    wind = bough_sub(wind, motion->hub_velocity);
     double axial = bough_dot(wind, motion->shaft);
     return atan2(bough_norm(bough_axpy(-axial, motion->shaft, wind)), fabs(axial));
 }

@@ -89,12 +89,33 @@ polars:
 EOF
 echo 'stations: {columns: [span, twist deg, chord, polar], rows: [[0, 0, 4, symmetric], [15, 0, 3, symmetric],
     [30, 0, 2, symmetric], [45, 0, 1, symmetric], [50, 0, 1, symmetric]]}' >blade.yaml
-for direction in 30 150; do
+# thrust DURATION SETTINGS: adds the thrust at the end of a rotor at constant speed to `thrusts`.
+thrust() {
+    duration=$1
+    shift
     expect 0 run rotor.yaml --out out --quiet --set control=null --set turbine.pitch=null --set turbine.speed=null --set loads=null \
-        --set 'turbine.hub.joint={motion: {speed: 12 rpm}}' --set 'simulation.duration=0.2 s' --set simulation.initial=equilibrium \
-        --set "aero={blade: blade.yaml, polars: polars.yaml, hub_radius: 2 m, induction: {skew: pitt-peters},
-            wind: {kind: uniform, speed: 9, direction: $direction deg}}"
-    last RtAeroFxh | tr -d - >>thrusts
+        --set 'turbine.hub.joint={motion: {speed: 12 rpm}}' --set "simulation.duration=$duration s" \
+        --set 'aero={blade: blade.yaml, polars: polars.yaml, hub_radius: 2 m, induction: {skew: pitt-peters}}' "$@"
+    last RtAeroFxh | awk '{ printf "%.7g\n", $1 < 0 ? -$1 : $1 }' >>thrusts
+}
+
+# one_thrust: all of `thrusts` are equal.
+one_thrust() {
+    [ "$(uniq thrusts | wc -l)" -eq 1 ] || fail "$said: a thrust of $(cat thrusts)"
+    rm thrusts
+}
+
+for direction in 30 150; do
+    thrust 0.2 --set simulation.initial=equilibrium --set "aero.wind={kind: uniform, speed: 9, direction: $direction deg}"
 done
-[ "$(uniq thrusts | wc -l)" -eq 1 ] || fail "$said: a thrust of $(cat thrusts)"
+one_thrust
+
+# A wake, its lean and its delay follow the wind relative to the rotor: 9 and 5 m/s as wind or as motion of the tower.
+for inflow in equilibrium oye; do
+    thrust 2 --set simulation.initial=undeformed --set aero.induction.inflow=$inflow \
+        --set 'aero.wind={kind: uniform, speed: 10.295630140987, direction: -29.054604099077 deg}'
+    thrust 2 --set simulation.initial=undeformed --set aero.induction.inflow=$inflow --set 'aero.wind={kind: uniform, speed: 9}' \
+        --set 'turbine.tower.joint={kind: prismatic, parent: ground, axis: y, motion: {speed: 5}}'
+    one_thrust
+done
 [ $failures -eq 0 ]

@@ -53,6 +53,7 @@ void bough_aero_motion_rotor(bough_aero_motion *m, double t) {
     bough_simulation_update(s);
     m->found.time = t;
     m->found.hub = bough_body_pose(s, rotor).position;
+    m->found.hub_velocity = bough_tree_frame_velocity(s->view, &s->tree->bodies[rotor]).linear;
     m->found.shaft = bough_simulation_joint_axis(s, rotor);
 }
 
@@ -129,6 +130,8 @@ void bough_aero_motion_expect_rotor(bough_aero_motion *m, double t, double ahead
     const double *frame = m->expected + BOUGH_BLADE_ROWS * m->n_vertex;
     bough_transform pose = m->moving[0].frame;
     bough_vec3 shaft = bough_mat3_mul(pose.rotation, load(frame + SHAFT));
+    bough_vec3 turning = bough_cross(load(frame + TWIST + 3), load(frame + HUB));
+    m->found.hub_velocity = bough_mat3_mul(pose.rotation, bough_add(load(frame + TWIST), turning));
     m->found.hub = bough_add(pose.position, bough_mat3_mul(pose.rotation, load(frame + HUB)));
     m->found.shaft = bough_scale(1 / bough_norm(shaft), shaft);
     m->found.time = t + ahead;
