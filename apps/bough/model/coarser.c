@@ -163,18 +163,42 @@ static double fastest_turn(const bough_scene *scene) {
     return fastest;
 }
 
-enum { MOST_OF_ROPE = 16 }; // segments: the errors of more are small, and twice as many cost most
+// The mass of a body or its rod.
+static double mass_of(const bough_scene_body *b) {
+    bool mesh = bough_scene_has_mesh(b);
+    return mesh ? b->rod.structure.station[0].def.mass * bough_scene_arc_length(&b->rod.structure) : b->mass;
+}
 
-// Whether a rod under the tension N of its weight and rotation bends within a length √(EI/N) that is less
-// than a segment: errors of half as many segments do not fall with their order.
-static bool is_rope(const bough_scene *scene, int body) {
+// The masses of a rod and of all that it carries.
+static double mass_beyond(const bough_scene *scene, int rod) {
+    double sum = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        int up = i;
+        while (up != rod && up >= 0) up = scene->body[up].joint.parent;
+        if (up == rod) sum += mass_of(&scene->body[i]);
+    }
+    return sum;
+}
+
+// h²N/EI: the square of a segment over the length in which a rod bends under the tension N by the weight and
+// the rotation of what it carries.
+static double slackness(const bough_scene *scene, int body) {
     const bough_scene_rod *rod = &scene->body[body].rod;
     const bough_section_station *root = &rod->structure.station[0].def;
     double length = bough_scene_arc_length(&rod->structure), h = length / rod->n_segment;
     double turn = fastest_turn(scene),
            pull = bough_norm(bough_v3_load(scene->gravity)) + turn * turn * length;
-    double bending = fmin(root->stiffness[15], root->stiffness[18]);
-    return rod->n_segment <= MOST_OF_ROPE && h * h * root->mass * length * pull > bending;
+    return h * h * mass_beyond(scene, body) * pull / fmin(root->stiffness[15], root->stiffness[18]);
+}
+
+// Of a slack rope even the errors of many segments fall at order 1, or not at all.
+static const double rope = 1, slack_rope = 8;
+
+// Whether the errors of half as many segments do not fall with their order. Those of more segments are small,
+// and twice as many cost most.
+static bool is_rope(const bough_scene *scene, int body) {
+    double q = slackness(scene, body);
+    return scene->body[body].rod.n_segment <= (q > slack_rope ? 24 : 16) && q > rope;
 }
 
 // Whether the axis turns by more than an eighth of a circle over a segment of mean length: twice as much is
@@ -243,7 +267,8 @@ double bough_coarser_ratio(const bough_scene *scene, const bough_scene *other) {
     for (int i = 0; i < scene->n_body; i++) {
         if (!bough_scene_has_mesh(&scene->body[i])) continue;
         double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
-        if (r != 1) ratio = fmax(ratio, r < 1 ? 1 : 0.75 / (r * r - 1));
+        bool whole = r < 1 || slackness(scene, i) > slack_rope;
+        if (r != 1) ratio = fmax(ratio, whole ? 1 : 0.75 / (r * r - 1));
     }
     return ratio;
 }
