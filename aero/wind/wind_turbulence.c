@@ -297,7 +297,7 @@ static void set_resolution(const bough_wind_iec_def *d, bough_wind_box *box) {
 }
 
 static int count_times(double period, double time_step) {
-    return smooth((int)ceil(period / time_step - 1e-9));
+    return smooth((int)fmax(4, ceil(period / time_step - 1e-9)));
 }
 
 double bough_turbulence_period(double period, double time_step) {

@@ -96,7 +96,7 @@ thrust() {
     expect 0 run rotor.yaml --out out --quiet --set control=null --set turbine.pitch=null --set turbine.speed=null --set loads=null \
         --set 'turbine.hub.joint={motion: {speed: 12 rpm}}' --set "simulation.duration=$duration s" \
         --set 'aero={blade: blade.yaml, polars: polars.yaml, hub_radius: 2 m, induction: {skew: pitt-peters}}' "$@"
-    last RtAeroFxh | awk '{ printf "%.7g\n", $1 < 0 ? -$1 : $1 }' >>thrusts
+    last RtAeroFxh | awk '{ printf "%.6g\n", $1 < 0 ? -$1 : $1 }' >>thrusts
 }
 
 # one_thrust: all of `thrusts` are equal.
@@ -118,4 +118,13 @@ for inflow in equilibrium oye; do
         --set 'turbine.tower.joint={kind: prismatic, parent: ground, axis: y, motion: {speed: 5}}'
     one_thrust
 done
+# What the air and the bodies say of the rotor's place agree, or there is a warning. A period is some steps of the turbulence.
+placed() {
+    says "$1" "$2" run "$folder/apps/turbine/rotor.yaml" --out out --quiet --set 'simulation.duration=40 ms' \
+        --set simulation.error_estimate=none --set "$3" --set "${4:-title=placed}"
+}
+placed 0 'blade1 at 0 s: it begins 1.499 m from the rotor.s axis, which aero.hub_radius contradicts' 'aero.hub_radius=2 m'
+placed 0 'its blades reach .* m below the ground' 'turbine.tower_height=50 m' 'aero.wind={kind: power, speed: 8, reference_height: 90 m}'
+placed 0 'it is 95 m beside aero.tower' 'turbine.tower.joint={kind: fixed, parent: ground, placement: [move x 100 m]}'
+placed 2 'aero.wind.period: ' 'aero.wind={kind: iec, condition: ntm, speed: 8, reference_height: 90 m, period: 1e-12 s}'
 [ $failures -eq 0 ]

@@ -28,6 +28,7 @@ static const double most_linear = 0.1;
 static const double least_margin = 0.01, least_share = 0.1;
 static const double most_open = 0.01;           // of the size of a closed loop
 static const double most_uneven = BOUGH_DEGREE; // of the gap between two blades
+static const double most_off = 0.02;            // of the hub's radius
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
 // Macro steps with more solver steps are counted, and reported when their work, steps times states (at least
@@ -60,6 +61,12 @@ static const struct {
         "the blades are not evenly spaced about its axis: between two of them are %.4g deg"},
     [BOUGH_LIMIT_ACROSS] = {"wind_across",
         "its axis is across the wind, or faces away from it: the angle between them is %.4g deg"},
+    [BOUGH_LIMIT_HUB] = {"hub_radius",
+        "it begins %.4g m from the rotor's axis, which aero.hub_radius contradicts: the losses at hub and tip belong to other radii"},
+    [BOUGH_LIMIT_GROUND] = {"below_ground",
+        "its blades reach %.4g m below the ground of the wind, z = 0"},
+    [BOUGH_LIMIT_PLACE] = {"tower_place",
+        "it is %.4g m beside aero.tower, which stands on the ground's origin and disturbs the wind there"},
     [BOUGH_LIMIT_MESH] = {"one_segment",
         "a rod of one segment bends by a third too little under a load along it, and its first frequency is a tenth too high: take more segments than %g"},
     [BOUGH_LIMIT_SINGULAR] = {"singular_position",
@@ -277,6 +284,27 @@ static void check_rotor(bough_simulation *s) {
     pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle / BOUGH_DEGREE);
 }
 
+// Where the rotor is for the air. Roots are at the hub's radius from its axis or, of coned blades, its
+// centre.
+static void check_place(bough_simulation *s) {
+    const bough_scene_aero *aero = &s->scene->aero;
+    int rotor = s->scene->turbine.rotor;
+    bough_rotor_place r = bough_simulation_rotor(s);
+    for (int k = 0; k < s->scene->turbine.n_blade; k++) {
+        const bough_beam *blade = bough_simulation_blade(s, k);
+        bough_vec3 root = bough_sub(bough_beam_pose(s, blade).position, r.hub);
+        double away = bough_norm(bough_axpy(-bough_dot(root, r.axis), r.axis, root));
+        bool inside = aero->hub_radius < (1 - most_off) * away;
+        if (inside || aero->hub_radius > (1 + most_off) * bough_norm(root))
+            pass_beam(s, BOUGH_LIMIT_HUB, blade, away);
+    }
+    double lowest = r.hub.z - r.radius * sqrt(fmax(0, 1 - r.axis.z * r.axis.z));
+    if (aero->wind.kind != BOUGH_SCENE_WIND_UNIFORM && lowest < 0)
+        pass(s->validity, BOUGH_LIMIT_GROUND, rotor, 0, -lowest);
+    double beside = hypot(r.hub.x, r.hub.y);
+    if (aero->tower.node && beside > r.radius / 2) pass(s->validity, BOUGH_LIMIT_PLACE, rotor, 0, beside);
+}
+
 static void check_wind(bough_simulation *s) {
     const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(s->aero));
     bough_wind_missed missed =
@@ -298,6 +326,7 @@ static void check_mesh(bough_simulation *s) {
 
 void bough_validity_start(bough_simulation *s) {
     if (s->scene->turbine.node) check_rotor(s);
+    if (s->aero) check_place(s);
     if (s->aero) check_wind(s);
     check_mesh(s);
     check_elements(s);

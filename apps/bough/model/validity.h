@@ -13,6 +13,9 @@ typedef enum bough_limit {
     BOUGH_LIMIT_SHAPES,      // a modal body, or a piece of one, bends by more than a tenth of its length
     BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
     BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
+    BOUGH_LIMIT_HUB,         // aero.hub_radius is not where the blades begin
+    BOUGH_LIMIT_GROUND,      // the rotor reaches below the ground of a wind that has one
+    BOUGH_LIMIT_PLACE,       // the rotor stands beside the tower that disturbs its wind
     BOUGH_LIMIT_MESH,        // a rod has one segment
     BOUGH_LIMIT_SINGULAR,    // a closed loop is near a singular position
     BOUGH_LIMIT_WIND,        // the wind changes and returns between two samples of the air
