@@ -52,6 +52,10 @@ for angle in -60 0 20 auto; do
     is BldPitch2 "$final" 1e-6
 done
 
+# A start takes the torque up at its rate, 15 kN m/s, from rest.
+expect 0 run rotor.yaml --out out --quiet --set 'control.events=[{kind: start, at: 1 s}]' --set 'simulation.duration=1.2 s'
+is GenTq 3 0.31
+
 # A steady operation above rated wind with rigid blades, whose pitch alone changes the air.
 expect 0 run "$folder/apps/turbine/power.yaml" --out out --quiet --set 'bodies[3-5].fidelity=rigid' \
     --set simulation.initial=operation --set aero.ramp=null --set 'aero.wind={kind: uniform, speed: 14 m/s}' \

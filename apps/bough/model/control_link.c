@@ -173,7 +173,9 @@ static void change(bough_control_link *l, int i, const bough_discon_sensed *sens
     double gone = sensed->time + sensed->step - state->since;
     switch ((bough_scene_event_kind)event->kind) {
     case BOUGH_SCENE_START:
-        if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) run_up(l, sensed, state, demand);
+        if (l->control->kind != BOUGH_SCENE_VARIABLE_SPEED) break;
+        run_up(l, sensed, state, demand);
+        demand->torque = fmin(demand->torque, l->now.torque + l->control->law.torque_rate * sensed->step);
         break;
     case BOUGH_SCENE_STOP:
         demand->torque = stopping_torque(state, gone, sensed->generator_speed);
