@@ -143,6 +143,17 @@ bodies:
 END
 run 0 '^status: complete' fall.yaml
 
+# The torque of a drive that nothing resists is rounding, which has no relative error.
+cat >carousel.yaml <<'END'
+simulation: {duration: 2 s}
+bodies:
+  - {name: e, fidelity: rigid, mass: 10, inertia: [1, 1, 1], joint: {kind: revolute, parent: ground, axis: z, motion: {speed: 3 rad/s}}}
+  - {name: p, fidelity: rigid, mass: 5, centre_of_mass: [0, 0, -3], inertia: [0.01, 0.01, 0.01],
+     joint: {kind: spherical, parent: e, placement: [rotate y 5 deg]}}
+END
+run 0 '^largest errors: ' carousel.yaml
+! grep -q '^warning' stdout || fail "a torque by rounding: $(cat stdout)"
+
 # A step whose repetitions end before they agree goes on, because the companion states its error; else it stops.
 cat >carrying.yaml <<'END'
 simulation: {duration: 0.1 s, macro_step: 20 ms, coupling: {scheme: ramp}}

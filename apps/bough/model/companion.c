@@ -2,6 +2,7 @@
 
 #include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/control_link.h"
+#include "apps/bough/model/equilibrium_search.h"
 #include "apps/bough/model/error_verdict.h"
 #include "apps/bough/model/simulation.h"
 #include "apps/bough/model/validity.h"
@@ -448,6 +449,8 @@ bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, c
                                     bough_companion *c) {
     *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
     take(c, arena);
+    bough_equilibrium_units unit = bough_equilibrium_measure(run);
+    c->force = unit.force, c->moment = unit.moment;
     for (int i = 0; i < run->scene->n_body; i++) {
         const bough_scene_body *body = &run->scene->body[i];
         if (bough_scene_has_mesh(body)) c->arm = fmax(c->arm, bough_scene_arc_length(&body->rod.structure));

@@ -8,9 +8,10 @@
 // Length and time of a scene, relative to those for which the constants of the search are chosen; 1 without a
 // length or without forces.
 typedef struct bough_equilibrium_units {
-    double length; // of its longest rod, link or spring [500 m]
-    double time;   // in which gravity, loads, springs and rotation move it by its length [8 s]
-    double period; // the same [s]
+    double length;        // of its longest rod, link or spring [500 m]
+    double time;          // in which gravity, loads, springs and rotation move it by its length [8 s]
+    double period;        // the same [s]
+    double force, moment; // all these forces, and times the length [N], [N m]; 0 without them
 } bough_equilibrium_units;
 
 // An equilibrium, its growth or a path of equilibria, within bough_arena_use.
@@ -33,7 +34,10 @@ typedef struct bough_equilibrium_search {
     double *change; // of one rod's vertices, see rod_static.h
 } bough_equilibrium_search;
 
-// The units of a scene, and with them the scales of the states (n_state).
+// The units of a scene.
+bough_equilibrium_units bough_equilibrium_measure(bough_simulation *s);
+
+// The same, and with them the scales of the states (n_state).
 bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, double *scale);
 
 // The system and its states at rest at the time.

@@ -103,14 +103,16 @@ static double find_acceleration(const bough_simulation *s, double length) {
 
 // -- units ----------------------------------------------------------------------------------------
 
-static bough_equilibrium_units find_units(bough_simulation *s) {
-    bough_equilibrium_units unit = {1, 1, 1};
+bough_equilibrium_units bough_equilibrium_measure(bough_simulation *s) {
+    bough_equilibrium_units unit = {1, 1, 1, 0, 0};
     bough_tree_kinematics(s->tree, s->tree->initial, s->view);
     double length = find_length(s);
     double acceleration = length > 0 ? find_acceleration(s, length) : 0;
     if (length > 0) unit.length = length / usual_length;
     if (acceleration > 0) unit.period = sqrt(length / acceleration);
     if (acceleration > 0) unit.time = unit.period / usual_time;
+    unit.force = find_mass(s) * acceleration;
+    unit.moment = unit.force * length;
     bough_simulation_update(s);
     return unit;
 }
@@ -134,7 +136,7 @@ static void scale_rod(int vertices, bough_equilibrium_units unit, double *scale)
 }
 
 bough_equilibrium_units bough_equilibrium_find_units(bough_simulation *s, double *scale) {
-    bough_equilibrium_units unit = find_units(s);
+    bough_equilibrium_units unit = bough_equilibrium_measure(s);
     bough_assembly_scales(s->assembly, scale);
     scale_links(s->tree, unit, scale);
     for (int k = 0; k < s->n_beam; k++) {
