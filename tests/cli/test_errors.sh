@@ -103,6 +103,11 @@ advised=$(sed -n 's/.* try master.step: \(.* s\) or .*/\1/p' stdout)
 run 0 '^largest errors: ' double.yaml --set "simulation.master.step=$advised"
 ! grep -q '(simulation.accuracy)' stdout || fail "steps of $advised: $(cat stdout)"
 
+# A motion that the companion shows as well as the finer solution does not grow unseen.
+run 0 '^warning: bVel errs by ' double.yaml --set simulation.macro_step=0.05 \
+    --set 'simulation.master={solver: arkode-esdirk, rtol: 1e-3}'
+! grep -q 'much faster than the macro step' stdout || fail "a warning of fast vibrations: $(cat stdout)"
+
 # One system of all bodies may have too many states for the solver that the scene names.
 run 3 'try .*scheme: monolithic with master.solver: automatic$' stop.yaml --set 'simulation.master.solver=radau5' \
     --set 'bodies[ra].rod.segments=40' --set 'simulation.coupling.scheme=frozen' --set 'simulation.macro_step=20 ms'

@@ -14,8 +14,8 @@
 
 static void take(bough_companion *c, bough_arena *arena) {
     size_t n = (size_t)c->channels->count + 1;
-    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->least, &c->grown, &c->low, &c->high,
-                     &c->other_low, &c->other_high, &c->noticed);
+    bough_arena_each(arena, n, &c->value, &c->before, &c->error, &c->shown, &c->least, &c->grown, &c->low,
+                     &c->high, &c->other_low, &c->other_high, &c->noticed);
     for (size_t i = 0; i < n; i++) {
         c->low[i] = c->other_low[i] = HUGE_VAL;
         c->high[i] = c->other_high[i] = -HUGE_VAL;
@@ -241,11 +241,12 @@ static bool is_large(const bough_companion *c, int i, double error) {
            bough_error_counts(c, i) && c->rest == 0;
 }
 
-static const double most_growth = 2; // of an error since the finer solution ended
+static const double most_growth = 2;   // of an error since the finer solution ended
+static const double least_shown = 0.5; // of an error, where the companion goes on to show it
 
 // Errors that grew in the second half of what the finer solution followed, until it would have taken too much
 // work, grow on in proportion to time, up to half the channel's range: that of a vibration that decays.
-// Beyond twice their size they may grow unseen.
+// Beyond twice their size they may grow unseen, unless the companion has shown them, too.
 static void extrapolate(bough_companion *c) {
     const bough_finer *f = &c->finer;
     double followed = f->left - f->from, t = c->run->master->time;
@@ -254,7 +255,8 @@ static void extrapolate(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         if (c->grown[i] < f->left - followed / 2 || !is_large(c, i, c->least[i])) continue;
         c->error[i] = fmax(c->error[i], fmin(times * c->least[i], bough_error_range(c, i) / 2));
-        if (times == most_growth) bough_validity_pass_fast(c->run);
+        bool seen = c->shown[i] >= least_shown * c->least[i];
+        if (times == most_growth && !seen) bough_validity_pass_fast(c->run);
     }
 }
 
@@ -432,6 +434,7 @@ static void compare(bough_companion *c) {
         error = error > late ? error : late;
         if (may_be_singular(c, i)) error = HUGE_VAL;
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
+        if (c->finer.follows) c->shown[i] = fmax(c->shown[i], error);
         if (bough_error_is_motion(channel) && error > largest * (c->high[i] - c->low[i]))
             largest = error / (c->high[i] - c->low[i]);
     }
@@ -540,8 +543,8 @@ void bough_companion_snapshot(bough_companion *c, bough_snapshot *s) {
     int n = c->channels->count;
     bough_simulation_snapshot(c->coarser.simulation, s);
     bough_finer_snapshot(&c->finer, s);
-    double *const rows[] = {c->value, c->error,     c->least,      c->grown,  c->low,
-                            c->high,  c->other_low, c->other_high, c->noticed};
+    double *const rows[] = {c->value, c->error, c->shown,     c->least,      c->grown,
+                            c->low,   c->high,  c->other_low, c->other_high, c->noticed};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) bough_snapshot_doubles(s, rows[k], n);
     // a restored companion goes on from the stored work, whatever its own counters are
     double work = bough_companion_work(c), now = work - c->earlier;

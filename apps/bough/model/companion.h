@@ -194,6 +194,7 @@ typedef struct bough_companion {
     double *value;                  // (channels->count) of the run at the last of them
     double *before;                 // (channels->count) of the run at the comparison before
     double *error;                  // (channels->count) largest so far, in the channels' units
+    double *shown;                  // (channels->count) the companion's, up to the end of the finer solution
     double *least;                  // (channels->count) beside the finer solution
     double *grown;                  // (channels->count) when that grew last [s]
     double *low, *high;             // (channels->count) range of the run
