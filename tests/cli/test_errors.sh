@@ -108,6 +108,14 @@ run 0 '^warning: bVel errs by ' double.yaml --set simulation.macro_step=0.05 \
     --set 'simulation.master={solver: arkode-esdirk, rtol: 1e-3}'
 ! grep -q 'much faster than the macro step' stdout || fail "a warning of fast vibrations: $(cat stdout)"
 
+# A search for the cause that takes over a second ends once finer steps confirm half of the companion's error, which
+# then stays as it is without a bound.
+pendulum() {
+    run "$1" 'aPos .* of its range' double.yaml --set 'simulation.duration=1200 s' --set simulation.error_bound="$2"
+    grep '"aPos": [0-9]' out/summary.json | head -1
+}
+[ "$(pendulum 3 0.05)" = "$(pendulum 0 0)" ] || fail "an error that finer steps confirm: $(pendulum 3 0.05)"
+
 # One system of all bodies may have too many states for the solver that the scene names.
 run 3 'try .*scheme: monolithic with master.solver: automatic$' stop.yaml --set 'simulation.master.solver=radau5' \
     --set 'bodies[ra].rod.segments=40' --set 'simulation.coupling.scheme=frozen' --set 'simulation.macro_step=20 ms'

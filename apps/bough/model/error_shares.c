@@ -19,12 +19,14 @@ static void unknown(bough_error_share *share, const char *why) {
 static const double most_times = 5; // the work of the run and its companion, by all further runs together
 static const double most_alone = 2; // the same by one that is coarser
 static const double little = 1e4;   // µs more
+static const double patience = 1e6; // µs of further runs, beyond which the verdict is enough
 
 typedef struct finding {
     bough_companion *companion;
     bool lost; // the companion may have lost the solution
     bool (*stop)(void);
     double left, left_alone; // work of all, and of the present one
+    bool confirmed;          // a finer run has shown enough of the error
     bough_error_shares *shares;
 } finding;
 
@@ -40,6 +42,7 @@ typedef struct further {
     finding *of;
     int parts;
     between to_companion, to_run;
+    double *least; // (n_channel) for is_confirmed; NULL: coarser runs
 } further;
 
 enum { OWN_MESH = BOUGH_COARSER_ALL & ~BOUGH_COARSER_MESH };
@@ -129,6 +132,25 @@ static bool is_by_mesh_early(finding *x) {
     return true;
 }
 
+static const double much_less = 0.5; // of the companion's error
+
+// Whether a finer run has shown that the steps err by more than the bound, in every way in which the error is
+// judged later, and by about as much as the companion says: its rest cannot change the verdict. Short
+// searches go to their end, for a better estimate.
+static bool is_confirmed(const further *f) {
+    const bough_companion *c = f->of->companion;
+    double taken = most_times * bough_companion_work(c) + little - f->of->left;
+    const bough_scene *scene = c->run->scene;
+    if (!f->least || taken < patience || has_part(scene, BOUGH_SHARE_AIR) || scene->simulation.error_shares)
+        return false;
+    for (int i = 0; i < c->channels->count; i++) {
+        double share = f->of->shares->share[BOUGH_SHARE_TIME].largest[i];
+        f->least[i] = fmin(f->to_run.largest[i], fmin(share, c->error[i]));
+    }
+    double least = largest_of(c, f->least);
+    return least > scene->simulation.error_bound && least >= much_less * largest_of(c, c->error);
+}
+
 static bough_status run_beside(bough_arena *arena, void *self) {
     const further *f = self;
     const bough_record *record = &f->of->companion->record;
@@ -146,6 +168,7 @@ static bough_status run_beside(bough_arena *arena, void *self) {
         compare(&other.channels, run, other.value, !bough_companion_air_sampled(other.simulation),
                 &f->to_run);
         if (f->parts == OWN_MESH && is_by_mesh_early(f->of)) break;
+        if ((f->of->confirmed = is_confirmed(f))) break;
     }
     return bough_ok();
 }
@@ -184,7 +207,7 @@ static bough_status find_share(finding *x, int kind) {
     }
     x->left_alone = most_alone * bough_companion_work(c) + little;
     further f = {x, BOUGH_COARSER_ALL & ~coarser[kind], between_companion_and(c, kind, share->largest),
-                 (between){ratio_of_others(c, kind), c->ratio_held, share->others}};
+                 (between){ratio_of_others(c, kind), c->ratio_held, share->others}, NULL};
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     if (!bough_is_ok(&status)) unknown(share, status.message);
@@ -220,8 +243,7 @@ static bough_status find(finding *x) {
 
 // -- a companion that has lost the solution -------------------------------------------------------
 
-static const double lost = 0.25;     // of the range, errors of a companion that may have lost the solution
-static const double much_less = 0.5; // of the companion's error
+static const double lost = 0.25; // of the range, errors of a companion that may have lost the solution
 
 // The two further runs that differ least from the run; false: fewer are known.
 static bool find_nearest(const bough_companion *c, const bough_error_shares *shares, int nearest[2],
@@ -291,11 +313,15 @@ static bough_status prove_kind(bough_arena *arena, finding *x, bough_error_share
     bool air = kind == BOUGH_SHARE_AIR;
     double *own = bough_arena_doubles(arena, n + 1), *others = x->shares->share[kind].others;
     double part = air ? bough_finer_air_ratio(c->run->scene) : bough_finer_time_ratio();
-    further f = {.of = x, .parts = air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME, .to_run = {part, part, own}};
+    further f = {.of = x,
+                 .parts = air ? BOUGH_FINER_AIR : BOUGH_FINER_TIME,
+                 .to_run = {part, part, own},
+                 .least = bough_arena_doubles(arena, n + 1)};
     x->left_alone = x->left;
     bough_status status = bough_arena_use(run_beside, &f);
     if (status.code == BOUGH_INTERRUPTED) return status;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
+        if (x->confirmed) own[i] = HUGE_VAL; // its largest errors are not known
         for (int k = 0; k < BOUGH_SHARES; k++) {
             double *share = &x->shares->share[k].largest[i];
             *share = fmin(*share, k == (int)kind ? own[i] : others[i]);
