@@ -46,6 +46,11 @@ s/optimal_tsr: 7/optimal_tsr: -7/|optimal_tsr: expected 0 to 100, got -7
 s/mass: 1000}/mass: -1000}/|mass: expected 0 to 1e+09, got -1000
 s/^airfoils:/environment: {shear_exp: -0.2}\nairfoils:/|shear_exp: expected 0 to 1, got -0.2
 END
+    sed "s/gear_ratio: 10, //; s/'2.1'/'3.0'/" "$folder/tests/data/decks/turbine-2.yaml" >../direct.yaml
+    expect 0 import windio ../direct.yaml --out out
+    has out/import.txt 'the file has no gear_ratio: 1 is taken'
+    has out/import.txt 'windIO_version 3.0: read in the layout of version 2'
+    rm -r out
     refused 'main.fst:[0-9]*:[0-9]*: unexpected' import windio "$folder/tests/data/decks/main.fst" --out out
     refused "unknown kind 'adams'" import adams main.cmd --out out
     refused 'unexpected argument' import openfast main.fst more --out out

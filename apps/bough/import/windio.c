@@ -15,6 +15,11 @@ static void find_parts(bough_windio *w) {
     w->train = bough_entry_need(d, w->parts, w->second ? "drivetrain" : "nacelle.drivetrain");
     w->tower = bough_entry(w->parts, "tower");
     w->degree = w->second ? 1 : 1 / BOUGH_DEGREE;
+    const bough_node *version = bough_entry(w->root, "windIO_version");
+    const char *number = version && version->kind == BOUGH_SCALAR ? version->text : "";
+    if (version && number[number[0] == 'v'] != (w->second ? '2' : '1'))
+        bough_taken(w, "windIO_version %.40s: read in the layout of version %d, which the file has", number,
+                    w->second ? 2 : 1);
 }
 
 static void read_axis(bough_windio *w) {

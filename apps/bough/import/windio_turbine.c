@@ -232,6 +232,8 @@ void bough_windio_bodies(bough_windio *w) {
     lump hub = hub_lump(w), nacelle = nacelle_lump(w, overhang, hub.mass);
     put_nacelle(w, rod, &nacelle);
     const char *rotor = put_hub(w, &hub, overhang, tilt, gear_ratio(w));
+    if (!bough_entry(w->train, w->second ? "gearbox.gear_ratio" : "gear_ratio"))
+        bough_taken(w, "the file has no gear_ratio: 1 is taken");
     put_blades(w, rotor, cone, pitch / BOUGH_DEGREE);
     bough_taken(w, "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
                 w->hub_radius, cone, tilt, overhang, pitch / BOUGH_DEGREE);
