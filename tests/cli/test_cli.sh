@@ -216,6 +216,8 @@ checks() {
     has ../stderr "warning: control.law: rated_power not given: the values of the NREL 5 MW turbine, .* 97, not 25"
     expect 0 check "$folder/apps/templates/turbine/scene.yaml" --set control.gear_ratio=97 --set control.law=null
     [ ! -s ../stderr ] || fail "a warning for the turbine of the defaults"
+    refused 'control.efficiency: must be in (0, 1\]' check "$folder/apps/turbine/power.yaml" --set control.efficiency=0
+    refused 'control.efficiency: must be in (0, 1\]' check "$folder/apps/turbine/power.yaml" --set control.efficiency=1.1
     refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
     refused "error: aero.wind.speed: must be in \[0, 150\] m/s, got '300'" check "$turbine" --set aero.wind.speed=300
     refused "solver: expected one of .*, got 'cvode' (did you mean 'cvode-bdf'?)" check "$bar" --set simulation.micro.solver=cvode

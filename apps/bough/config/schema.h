@@ -171,7 +171,7 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]);
 enum { BOUGH_BASE_UNITS = 4 };
 bool bough_unit_base(const char *text, double *factor, int exponent[BOUGH_BASE_UNITS], char why[160]);
 
-// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; NULL: any is.
+// Whether the value is in a range "> 0", ">= 0", "[0, 2]", "(0, 2]"; NULL: any is.
 bool bough_in_range(double value, const char *range);
 
 // A whole number of at most nine digits.

@@ -104,10 +104,10 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
 // Ranges are those of the tables of keys, which are not checked.
 bool bough_in_range(double value, const char *range) {
     if (range == NULL) return true;
-    if (range[0] == '[') {
+    if (range[0] == '[' || range[0] == '(') {
         char *end;
         double low = strtod(range + 1, &end);
-        return value >= low && value <= strtod(end + 1, NULL);
+        return (value > low || (value == low && range[0] == '[')) && value <= strtod(end + 1, NULL);
     }
     if (range[1] == '=') return value >= strtod(range + 2, NULL);
     return value > strtod(range + 1, NULL);
@@ -117,8 +117,8 @@ static bool check_range(bough_schema_reader *r, const bough_key *key, const boug
     if (isnan(value) || bough_in_range(value, key->range)) return true;
     char shown[64];
     const char *unit = bough_dimension_unit(key->dimension);
-    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "", key->range,
-                       unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
+    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", strchr("[(", key->range[0]) ? "in " : "",
+                       key->range, unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
     return false;
 }
 

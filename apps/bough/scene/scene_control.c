@@ -154,7 +154,7 @@ const bough_schema bough_scene_control_schema = {.name = "the control", .check =
      .help = "sampling rate; the period is a multiple of the macro step"},
     {KEY(NUMBER, gear_ratio), .range = "> 0", .fallback = "97", .example = "105",
      .help = "generator speed divided by rotor speed"},
-    {KEY(NUMBER, efficiency), .range = "[0, 1]", .fallback = "0.944", .example = "0.965",
+    {KEY(NUMBER, efficiency), .range = "(0, 1]", .fallback = "0.944", .example = "0.965",
      .help = "electrical power divided by mechanical power of the generator; the inverse where the generator "
              "drives the rotor"},
     {KEY(BOOLEAN, pitch), .fallback = "true",
