@@ -84,6 +84,13 @@ expect 0 run "$folder/tests/data/scenes/example-turbine.yaml" --out out --quiet 
     --set "aero.wind={kind: wnd, file: $PWD/north.wnd, reference_height: 20 m, reference_length: 10 m}"
 is Wind1VelX 10 1e-3
 
+# The tower's influence on the wind stands where its body does.
+for x in 0 500; do
+    expect 0 run "$folder/apps/turbine/land.yaml" --out out --quiet --set "bodies[tower].joint.placement=[move x $x m]" \
+        --set aero.tower.body=tower --set 'simulation.duration=0.1 s' --set simulation.error_estimate=none
+    is RtVAvgxh 19.85599 1e-4
+done
+
 # Wind from behind is the mirror image of that from the front, for a rotor of symmetric, untwisted blades.
 cat >polars.yaml <<'EOF'
 polars:

@@ -117,6 +117,13 @@ static bough_wind_def wind_def(const bough_scene *scene) {
     return def;
 }
 
+bough_vec3 bough_aero_link_foot(const bough_simulation *s) {
+    const bough_scene_tower *tower = &s->scene->aero.tower;
+    if (tower->body_name == NULL) return bough_v3(0, 0, 0);
+    bough_vec3 foot = bough_body_pose(s, tower->body).position;
+    return bough_v3(foot.x, foot.y, 0);
+}
+
 static bough_rotor_def rotor_def(bough_arena *arena, const bough_aero_link *l) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
     const bough_rod_def *mesh = &l->beam[0]->def;
@@ -142,6 +149,7 @@ static bough_rotor_def rotor_def(bough_arena *arena, const bough_aero_link *l) {
     def.stall = (bough_stall_kind)aero->dynamic_stall;
     def.wind = wind_def(l->simulation->scene);
     if (aero->tower.node != NULL) def.tower = aero->tower.def;
+    def.tower.base = bough_aero_link_foot(l->simulation);
     def.n_polar = aero->polars.n_polar;
     def.polar = take_polars(arena, &aero->polars);
     def.n_station = aero->blade.n_station;

@@ -30,6 +30,9 @@ void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, dou
 // Saves, restores or measures the present loads on a blade; returns the size of `memory`.
 int bough_aero_link_loads(bough_aero_link *link, bough_snapshot_move move, int blade, double *memory);
 
+// The place of the ground [m] on which the tower of the scene's air stands: below its body, or the origin.
+bough_vec3 bough_aero_link_foot(const bough_simulation *simulation);
+
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
 // bough_aero_signal_missed of a blade.

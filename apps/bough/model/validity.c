@@ -66,7 +66,7 @@ static const struct {
     [BOUGH_LIMIT_GROUND] = {"below_ground",
         "its blades reach %.4g m below the ground of the wind, z = 0"},
     [BOUGH_LIMIT_PLACE] = {"tower_place",
-        "it is %.4g m beside aero.tower, which stands on the ground's origin and disturbs the wind there"},
+        "it is %.4g m beside aero.tower, which stands at x = y = 0 or where its 'body' begins"},
     [BOUGH_LIMIT_MESH] = {"one_segment",
         "a rod of one segment bends by a third too little under a load along it, and its first frequency is a tenth too high: take more segments than %g"},
     [BOUGH_LIMIT_SINGULAR] = {"singular_position",
@@ -301,7 +301,8 @@ static void check_place(bough_simulation *s) {
     double lowest = r.hub.z - r.radius * sqrt(fmax(0, 1 - r.axis.z * r.axis.z));
     if (aero->wind.kind != BOUGH_SCENE_WIND_UNIFORM && lowest < 0)
         pass(s->validity, BOUGH_LIMIT_GROUND, rotor, 0, -lowest);
-    double beside = hypot(r.hub.x, r.hub.y);
+    bough_vec3 foot = bough_aero_link_foot(s);
+    double beside = hypot(r.hub.x - foot.x, r.hub.y - foot.y);
     if (aero->tower.node && beside > r.radius / 2) pass(s->validity, BOUGH_LIMIT_PLACE, rotor, 0, beside);
 }
 

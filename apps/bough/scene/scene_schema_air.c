@@ -167,7 +167,7 @@ static const bough_schema wind_schema = {.name = "the wind", .check = bough_scen
              "at the reference height, which for a box is its hub height, and 90 m for other winds "
              "without one"},
     {DEF(vertical), UNIT(SPEED), .fallback = "0", .example = "0.5 m/s",
-     .help = "vertical speed, upwards, at every height and time"},
+     .help = "vertical speed, upwards, at every height and time; with kind uniform, power or log"},
 )};
 #undef FILLS
 #undef DEF
@@ -212,7 +212,7 @@ static const bough_schema tower_schema = {.name = "a tower", .check = bough_scen
      .fallback = "none",
      .help = "wake behind the tower"},
     {NAMED("height", NUMBERS), AT(def.height), UNIT(LENGTH), .range = ">= 0", .count = 2, .required = true,
-     .increasing = true, COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
+     .increasing = true, COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground"},
     {NAMED("diameter", NUMBERS), AT(def.diameter), UNIT(LENGTH), .range = "> 0", .count = 2, .required = true,
      COUNT_AT(n_diameter), .example = "[6, 4.9 m, 3.87 m]", .help = "diameter at each height"},
     {NAMED("drag", NUMBERS), AT(def.drag), .range = ">= 0", .count = 1, .fallback = "[1]", COUNT_AT(n_drag),
@@ -220,7 +220,7 @@ static const bough_schema tower_schema = {.name = "a tower", .check = bough_scen
      .help = "drag coefficient: one for the whole tower, or one at each height; for bak, powles "
              "and the drag on a body"},
     {NAMED("body", TEXT), AT(body_name), .example = "tower",
-     .help = "body with a rod on which the tower's drag acts; default no drag"},
+     .help = "body with a rod on which the tower's drag acts, and at whose origin the tower stands; default no drag"},
 )};
 #undef FILLS
 
@@ -244,7 +244,7 @@ const bough_schema bough_scene_aero_schema = {.name = "the aerodynamics", KEYS(
     {KEY(MAPPING, induction), .of = &induction_schema,
      .help = "parts of the blade element momentum theory"},
     {KEY(MAPPING, tower), .of = &tower_schema,
-     .help = "influence of a vertical tower on the wind at the blades; default none"},
+     .help = "influence of a vertical tower on the wind at the blades, at x = y = 0 or where its 'body' begins; default none"},
     {KEY(NUMBER, hub_radius), UNIT(LENGTH), .range = "> 0", .required = true, .example = "1.5 m",
      .help = "from the rotor axis to the blade roots"},
     {KEY(NUMBER, hub_drag_area), .range = ">= 0", .fallback = "0", .example = "5",
