@@ -341,11 +341,15 @@ static void double_rate(const bough_scene *scene, bool shorter, bough_scene *to)
 }
 
 // Half the rate; beside a finer mesh twice the rate where macro steps allow it: a coarser one can hide in the
-// difference what the mesh shows. Loads that are held between samples err most: for them macro steps of half
-// the length make room.
+// difference what the mesh shows. Loads that are held between samples and meshes of few segments err most:
+// for them macro steps of half the length make room, but not for modal bodies, which err little by theirs.
 static void change_rate(const bough_scene *scene, bool finer, bough_scene *to) {
+    bool shorter = holds_loads(scene);
+    for (int i = 0; i < scene->n_body; i++)
+        shorter = shorter || (scene->body[i].fidelity == BOUGH_SCENE_ROD &&
+                              own_segments(scene, i, false) > scene->body[i].rod.n_segment);
     to->aero.rate = scene->aero.rate / 2;
-    if (finer) double_rate(scene, holds_loads(scene), to);
+    if (scene->aero.node && finer) double_rate(scene, shorter, to);
 }
 
 // When the loads show a jump from a time on, held constant between samples.
