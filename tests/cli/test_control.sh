@@ -138,4 +138,8 @@ placed 0 'blade1 at 0 s: it begins 1.499 m from the rotor.s axis, which aero.hub
 placed 0 'its blades reach .* m below the ground' 'turbine.tower_height=50 m' 'aero.wind={kind: power, speed: 8, reference_height: 90 m}'
 placed 0 'it is 95 m beside aero.tower' 'turbine.tower.joint={kind: fixed, parent: ground, placement: [move x 100 m]}'
 placed 2 'aero.wind.period: ' 'aero.wind={kind: iec, condition: ntm, speed: 8, reference_height: 90 m, period: 1e-12 s}'
+# Joints of rigid blades carry the loads of the air from the first row on.
+placed 0 '' title=rigid
+awk '/^ *Time/ { for (i = 1; i <= NF; i++) if ($i == "RotTorq") at = i } /^ *0\.0/ { first = $at } { last = $at }
+    END { exit !(first > 0.99 * last && last > 1000) }' out/channels.out || fail "the torque of a rigid rotor at the start"
 [ $failures -eq 0 ]

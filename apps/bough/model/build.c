@@ -233,6 +233,13 @@ int bough_simulation_threads(const bough_scene *scene) {
     return scene->simulation.threads > 0 ? scene->simulation.threads : bough_pool_default(1);
 }
 
+// Whether joints carry the loads of the air from the start on, which rods let rise with their deformation.
+static bool has_rigid_blades(const bough_scene *scene) {
+    bool undeformed = scene->simulation.initial == BOUGH_SCENE_UNDEFORMED;
+    return scene->aero.node && undeformed &&
+           scene->body[scene->turbine.blade[0]].fidelity == BOUGH_SCENE_RIGID;
+}
+
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation) {
     int threads = bough_simulation_threads(scene);
@@ -260,6 +267,7 @@ bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *sc
     BOUGH_TRY(build_master(&b));
     if (b.s->control != NULL) BOUGH_TRY(bough_control_link_watch(arena, b.s->control));
     bough_simulation_update(b.s);
+    if (has_rigid_blades(scene)) bough_aero_link_hold(b.s->aero, 0); // for the row at the start
     bough_validity_start(b.s);
     *simulation = b.s;
     return bough_ok();
