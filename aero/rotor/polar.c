@@ -148,14 +148,6 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
     polar->high = a_whole ? b->high : b_whole ? a->high : fmin(a->high, b->high);
 }
 
-// The slope at a knot between chords of slopes s0, s1 over h0, h1: none at an extremum, else the
-// harmonic mean weighted towards the shorter side.
-static double monotone_slope(double h0, double s0, double h1, double s1) {
-    if (!(s0 * s1 > 0)) return 0;
-    double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-    return (w0 + w1) / (w0 / s0 + w1 / s1);
-}
-
 void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     int last = polar->n - 1;
     double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
@@ -165,7 +157,7 @@ void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
         const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);
         for (int c = 0; c < 3; c++)
             slope[3 * k + c] =
-                monotone_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0], here[4 + c]);
+                bough_cubic_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0], here[4 + c]);
     }
     for (int k = 0; k < last; k++) {
         double *row = polar->row + ROW * k, h = row[ROW] - row[0];

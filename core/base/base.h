@@ -99,3 +99,11 @@ static inline void bough_cubic_bend(double chord, double s0, double s1, double d
     c[0] = (3 * chord - 2 * s0 - s1) / d;
     c[1] = (s0 + s1 - 2 * chord) / (d * d);
 }
+
+// The slope at a knot between chords of slopes s0, s1 over h0, h1 for cubics as monotone as the knots: none
+// at an extremum, else the harmonic mean weighted towards the shorter side.
+static inline double bough_cubic_slope(double h0, double s0, double h1, double s1) {
+    if (!(s0 * s1 > 0)) return 0;
+    double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+    return (w0 + w1) / (w0 / s0 + w1 / s1);
+}

@@ -51,6 +51,14 @@ END
     has out/import.txt 'the file has no gear_ratio: 1 is taken'
     has out/import.txt 'windIO_version 3.0: read in the layout of version 2'
     rm -r out
+    # a bent reference line of many points is smooth: a parabola between two of its points, which are 0.0016 m beside their chord
+    sed 's/^        x: {grid: .*/        x: {grid: [0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1], values: [0, -0.00625, -0.025, -0.05625, -0.1, -0.15625, -0.225, -0.30625, -0.4]}/' \
+        "$folder/tests/data/decks/turbine-1.yaml" >../bent.yaml
+    expect 0 import windio ../bent.yaml --out out --hub-mass 1000 --nacelle-mass 1000
+    sed -n 's/^ *- \[5.625, [^[]*\[\(-[0-9.]*\), .*/\1/p' out/blade-structure.yaml |
+        awk '{ found = 1; exit !($1 > -0.1269 && $1 < -0.1262) } END { if (!found) exit 1 }' ||
+        fail "a smooth line: $(grep '\[5.6' out/blade-structure.yaml)"
+    rm -r out
     refused 'main.fst:[0-9]*:[0-9]*: unexpected' import windio "$folder/tests/data/decks/main.fst" --out out
     refused "unknown kind 'adams'" import adams main.cmd --out out
     refused 'unexpected argument' import openfast main.fst more --out out

@@ -22,6 +22,36 @@ static void find_parts(bough_windio *w) {
                     w->second ? 2 : 1);
 }
 
+// Pieces of a bent line between two points of the file; fewer points than LEAST are corners.
+enum { PIECES = 6, LEAST = 8 };
+
+// A line through the points of the file as a polygon of many pieces, smooth where it is bent: in a polygon of
+// the points themselves a mesh finds corners, by which its error does not fall with its order.
+static bough_curve smooth_line(bough_draft *d, const bough_curve *c) {
+    int n = (c->n - 1) * PIECES + 1, last = c->n - 1;
+    double *x = bough_arena_doubles(d->arena, (size_t)n), *y = bough_arena_doubles(d->arena, (size_t)n);
+    double *chord = bough_arena_doubles(d->arena, (size_t)c->n), bend = 0;
+    for (int k = 0; k < last; k++) chord[k] = (c->y[k + 1] - c->y[k]) / (c->x[k + 1] - c->x[k]);
+    for (int k = 1; k < last; k++) bend = fmax(bend, fabs(chord[k] - chord[k - 1]));
+    if (c->n < LEAST || bend < 1e-6) return *c;
+    double before = chord[0];
+    for (int k = 0; k < last; k++) {
+        double h = c->x[k + 1] - c->x[k], bent[2];
+        double after = k + 1 == last
+                           ? chord[k]
+                           : bough_cubic_slope(h, chord[k], c->x[k + 2] - c->x[k + 1], chord[k + 1]);
+        bough_cubic_bend(chord[k], before, after, h, bent);
+        for (int i = 0; i < PIECES; i++) {
+            double t = h * i / PIECES;
+            x[k * PIECES + i] = c->x[k] + t;
+            y[k * PIECES + i] = c->y[k] + t * (before + t * (bent[0] + t * bent[1]));
+        }
+        before = after;
+    }
+    x[n - 1] = c->x[last], y[n - 1] = c->y[last];
+    return (bough_curve){c->node, n, x, y};
+}
+
 static void read_axis(bough_windio *w) {
     static const char *const key[] = {"reference_axis.x", "reference_axis.y", "reference_axis.z"};
     const bough_node *from = w->second ? w->blade : w->shape;
@@ -40,6 +70,8 @@ static void read_axis(bough_windio *w) {
                          "reference_axis.z: expected a line from 0 m at the grid's 0 to its 1");
     }
     w->blade_length = z->y[z->n - 1];
+    for (int i = 0; i < 2 && bough_is_ok(w->draft->status); i++)
+        w->axis[i] = smooth_line(w->draft, &w->axis[i]);
 }
 
 // Limits of numbers that a file may lack; those of angles are in degrees.
