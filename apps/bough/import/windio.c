@@ -1,6 +1,8 @@
 // A turbine of the WindIO ontology: the paths of its parts in both layouts, and the order of the scene.
 #include "apps/bough/import/windio.h"
 
+#include <ctype.h>
+
 static const double duration = 20; // [s]: the file has none
 
 // -- reading --------------------------------------------------------------------------------------
@@ -113,7 +115,7 @@ static void read_assembly(bough_windio *w) {
                          (int)BOUGH_IMPORT_BLADES, blades);
     }
     const bough_node *side = bough_entry(assembly, "rotor_orientation");
-    char first = side && side->kind == BOUGH_SCALAR ? (char)(side->text[0] | ' ') : 'u';
+    int first = side && side->kind == BOUGH_SCALAR ? tolower((unsigned char)side->text[0]) : 'u';
     if (first != 'u' && first != 'd')
         bough_entry_fail(d, side, "rotor_orientation: expected upwind or downwind, got '%.60s'", side->text);
     w->forward = first == 'd' ? -1 : 1;
