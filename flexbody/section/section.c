@@ -462,8 +462,16 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .sections = {part_strain, bough_section_mass_below, bend_at, a}};
     for (int i = 0; i <= n_segment; i++) {
         span[i] = a->arc[a->n - 1] * bough_section_graded(table->grading, (double)i / n_segment);
-        position[i] = bough_section_at(a, span[i]).position;
-        rotation[i] = bough_section_rotation(a, bough_section_find(a, span[i]));
+        bough_section_place place = bough_section_find(a, span[i]);
+        position[i] = bough_section_of(place).position;
+        rotation[i] = bough_section_rotation_in(place);
+    }
+    // between vertices the axis may bend at one side of a vertex or at the other, as the stations lie
+    for (int i = 1; i < n_segment; i++) {
+        bough_vec3 t = bough_add(bough_section_direction(position[i - 1], position[i]),
+                                 bough_section_direction(position[i], position[i + 1]));
+        t = bough_section_direction(bough_v3(0, 0, 0), t);
+        rotation[i] = bough_section_rotation(t, bough_section_at(a, span[i]).twist);
     }
     for (int k = 0; k < n_segment; k++) {
         if (segment_matrices(a, def, k, &laws)) continue;

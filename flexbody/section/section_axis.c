@@ -113,25 +113,20 @@ bough_section_station bough_section_at(const bough_section_axis *a, double s) {
     return bough_section_of(bough_section_find(a, s));
 }
 
-// Tangent of the axis; at a station the mean of its two sides.
-static bough_vec3 tangent_at(const bough_section_axis *a, bough_section_place p) {
-    bough_vec3 t = bough_sub(p.high->position, p.low->position);
-    t = bough_scale(1 / bough_norm(t), t);
-    // at a station: the mean direction of both sides
-    if (p.fraction == 0 && p.low > a->station) {
-        bough_vec3 before = bough_sub(p.low->position, p.low[-1].position);
-        t = bough_axpy(1 / bough_norm(before), before, t);
-        t = bough_scale(1 / bough_norm(t), t);
-    }
-    return t;
+bough_vec3 bough_section_direction(bough_vec3 from, bough_vec3 to) {
+    bough_vec3 step = bough_sub(to, from);
+    return bough_scale(1 / bough_norm(step), step);
 }
 
 // The smallest rotation of z onto the tangent, then −twist about it.
-bough_quaternion bough_section_rotation(const bough_section_axis *a, bough_section_place p) {
-    bough_vec3 t = tangent_at(a, p);
+bough_quaternion bough_section_rotation(bough_vec3 t, double twist) {
     bough_quaternion lean = bough_quaternion_normalised((bough_quaternion){1 + t.z, -t.y, t.x, 0});
-    double half = -0.5 * bough_section_mix(p.fraction, p.low->twist, p.high->twist);
-    return bough_quaternion_product(lean, (bough_quaternion){cos(half), 0, 0, sin(half)});
+    return bough_quaternion_product(lean, (bough_quaternion){cos(0.5 * twist), 0, 0, -sin(0.5 * twist)});
+}
+
+bough_quaternion bough_section_rotation_in(bough_section_place p) {
+    bough_vec3 t = bough_section_direction(p.low->position, p.high->position);
+    return bough_section_rotation(t, bough_section_mix(p.fraction, p.low->twist, p.high->twist));
 }
 
 // A part of the interval behind station k, of whose quadrature the points are visited.

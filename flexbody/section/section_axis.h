@@ -26,10 +26,15 @@ static inline double bough_section_mix(double fraction, double low, double high)
     return low + fraction * (high - low);
 }
 
-// The section at a place, or at arc length s, and its axes in the BRF.
+// The section at a place, or at arc length s.
 bough_section_station bough_section_of(bough_section_place place);
 bough_section_station bough_section_at(const bough_section_axis *a, double s);
-bough_quaternion bough_section_rotation(const bough_section_axis *a, bough_section_place place);
+
+// The axes in the BRF of a section with a twist whose axis has a direction (a unit vector), and of a
+// place between stations, which are joined by straight lines.
+bough_vec3 bough_section_direction(bough_vec3 from, bough_vec3 to);
+bough_quaternion bough_section_rotation(bough_vec3 direction, double twist);
+bough_quaternion bough_section_rotation_in(bough_section_place place);
 
 // A point of a quadrature on the axis.
 typedef struct bough_section_point {

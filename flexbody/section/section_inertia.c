@@ -124,7 +124,7 @@ static void add_mass(void *context, const bough_section_point *p) {
     double twisted = twist_fraction(c, s);
     bough_section_station x = bough_section_of(p->place);
     bough_vec3 chord = on_chord_at(def, k, s);
-    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(c->axis, p->place));
+    bough_mat3 section = bough_rotation_matrix(bough_section_rotation_in(p->place));
     for (int side = 0; side < 2; side++) {
         double hat = side == 0 ? 1 - fraction : fraction;
         element on_chord = element_of(c, &x, section, weight, k + side, chord);
@@ -306,7 +306,7 @@ static void add_part(void *context, const bough_section_point *p) {
     part *c = context;
     const lumping *whole = c->whole;
     bough_section_station x = bough_section_of(p->place);
-    bough_mat3 section = bough_rotation_matrix(bough_section_rotation(whole->axis, p->place));
+    bough_mat3 section = bough_rotation_matrix(bough_section_rotation_in(p->place));
     bough_vec3 chord = on_chord_at(whole->def, whole->segment, p->s);
     element e = element_of(whole, &x, section, p->weight, whole->segment, chord);
     double distance = p->s - whole->def->span[whole->segment];

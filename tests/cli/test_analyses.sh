@@ -67,6 +67,30 @@ EOF
     rm -r sensed
 }
 
+# A swept cantilever under a small load along it, whose vertices lie on or just behind the stations: the twist of
+# the polygon, integral of moments over stiffness, is 5.470e-4 deg at the tip.
+swept() {
+    cat >../swept.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 50 ms, initial: equilibrium, output: {channels: [bSpn*RDz]}}
+bodies: [{name: b, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: {table: swept-table.yaml, segments: 24}}]
+loads: [{body: b, along: [0, 25], force: [8, 0, 0]}]
+sensors: [{body: b, at: [25]}]
+EOF
+    awk 'BEGIN {
+        print "length: 25\ndamping: [.01, .01, .01, .01, .01, .01]"
+        print "stations:\n  columns: [span, axis, stiffness, mass]\n  rows:"
+        for (i = 0; i < 25; i++) printf "    - [%.8f, [0, %.8f], [2e8, 2e8, 2e9, 1.2e9, 3.6e8, 3.6e7], [80, 0, 0, 5, 1, 0]]\n",
+            25 * i / 24, 0.75 * (i / 24) ^ 2
+    }' >../swept-table.yaml
+    for segments in 12 24 48; do
+        expect 0 run ../swept.yaml --out swept --set "bodies[b].rod.segments=$segments"
+        near swept/channels.out '^ *5\.0.*E-02' 2 -5.470e-4 "$(awk "BEGIN { print 1e-5 * 12 / $segments }")"
+        ! grep -q '^warning' ../stdout || fail "$said: forces by rounding at the tip: $(cat ../stdout)"
+        rm -r swept
+    done
+}
+
 # The blade under 100 kN at its tip: reference of a geometrically exact beam by shooting.
 statics() {
     expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]'
@@ -401,6 +425,7 @@ EOF
 
 statics
 sensed
+swept
 loaded
 still
 modes

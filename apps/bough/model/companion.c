@@ -448,15 +448,21 @@ static void compare(bough_companion *c) {
 
 // -- the start -------------------------------------------------------------------------------------
 
+static const double least_of_scene = 1e-12; // of the scene's weight and loads: less is rounding
+
 bough_status bough_companion_create(bough_arena *arena, bough_simulation *run, const bough_channels *channels,
                                     bough_companion *c) {
     *c = (bough_companion){.run = run, .channels = channels, .status = bough_ok()};
     take(c, arena);
     bough_equilibrium_units unit = bough_equilibrium_measure(run);
-    c->force = unit.force, c->moment = unit.moment;
+    c->force = least_of_scene * unit.force, c->moment = least_of_scene * unit.moment;
     for (int i = 0; i < run->scene->n_body; i++) {
         const bough_scene_body *body = &run->scene->body[i];
-        if (bough_scene_has_mesh(body)) c->arm = fmax(c->arm, bough_scene_arc_length(&body->rod.structure));
+        if (!bough_scene_has_mesh(body)) continue;
+        double length = bough_scene_arc_length(&body->rod.structure);
+        double force = 2e-16 * body->rod.structure.station[0].def.stiffness[11]; // of strains by rounding
+        c->arm = fmax(c->arm, length);
+        c->force = fmax(c->force, force), c->moment = fmax(c->moment, force * length);
     }
     if (run->scene->simulation.error_estimate != BOUGH_SCENE_COMPANION) {
         give_up(c, "simulation.error_estimate is none");

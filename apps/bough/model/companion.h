@@ -184,7 +184,7 @@ typedef struct bough_companion {
     double motion;                  // largest range of all motion, or value up to 1, in SI units
     double rest;                    // motion of a scene at rest; 0: it moves
     double arm;                     // length of the longest rod [m]; 0: there is none
-    double force, moment;           // of the whole scene (bough_equilibrium_units)
+    double force, moment;           // less is rounding [N, N m]
     long compared;                  // times
     bough_run_counts counted;       // of the run, from where steps and corners are counted
     long corners;                   // so far

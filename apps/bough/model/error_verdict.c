@@ -68,9 +68,8 @@ double bough_error_relative(const bough_companion *c, int channel, double error)
 
 // -- what counts ----------------------------------------------------------------------------------
 
-static const double least_motion = 1e-12;   // [m], [rad], [m/s], [rad/s]: less is always rounding
-static const double least_load = 1e-9;      // of the largest force or moment, in SI units: likewise
-static const double least_of_scene = 1e-12; // of the scene's weight and loads, times its length: likewise
+static const double least_motion = 1e-12; // [m], [rad], [m/s], [rad/s]: less is always rounding
+static const double least_load = 1e-9;    // of the largest force or moment, in SI units: likewise
 
 static double kind_range(const bough_companion *c, bough_quantity_kind kind) {
     double largest = 0;
@@ -126,9 +125,8 @@ bool bough_error_counts(const bough_companion *c, int i) {
     double moves = channel->si * fmax(bough_error_range(c, i), c->error[i]);
     bool moving = bough_error_is_motion(channel) ? moves > fmax(rounding * c->motion, least_motion)
                                                  : moves > least_share * channel->si * largest_value(c, i);
-    double scene = channel->kind == BOUGH_KIND_MOMENT ? c->moment : c->force;
-    if (is_force(channel) && moves <= fmax(least_load * largest_load(c), least_of_scene * scene))
-        return false;
+    double least = channel->kind == BOUGH_KIND_MOMENT ? c->moment : c->force;
+    if (is_force(channel) && moves <= fmax(least_load * largest_load(c), least)) return false;
     return moving && moves >= least_share * range_of_kind(c, channel->kind);
 }
 
