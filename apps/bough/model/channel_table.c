@@ -134,7 +134,8 @@ static const bough_channel_family families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_WIND] = {"Wind", NULL, ROWS(
         SAME_OF(1, "Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x"),
         SAME_OF(2, "Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
-        SAME_OF(3, "Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
+        SAME_OF(3, "Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z")), .sampled = BOUGH_BY_TIME},
+    [BOUGH_CHANNELS_ROTOR_WIND] = {"Wind on a rotor, at the last aerodynamic sample", NULL, ROWS(
         SAME_XYZ("RtVAvg", "h", "m/s", "wind relative to the blades, mean over all blade elements, with the tower's influence, along the hub's ", ""),
         {"RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh; 0 in still air", "RtTSR", 0, 3}), .sampled = BOUGH_BY_AIR},
     [BOUGH_CHANNELS_ELEMENT] = {"Blade element that aero.nodes names",

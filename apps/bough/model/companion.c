@@ -188,6 +188,7 @@ static bool flutters(double run, double companion) {
 // 1/Q of a channel. A sampled channel that the companion holds one sample longer differs by the change in
 // that time.
 static double ratio_of(const bough_companion *c, const bough_channel *channel, double ratio, bool held) {
+    if (channel->sampled == BOUGH_BY_TIME) return 0; // a jump may come later in the companion
     if (channel->sampled) return held ? c->ratio_held : ratio;
     bool follows = channel->kind == BOUGH_KIND_FORCE && !bough_coarser_steps_alone(c->run->scene);
     return follows ? fmax(ratio, least_ratio_of_force) : ratio;
@@ -414,8 +415,9 @@ static void compare(bough_companion *c) {
     // of two rates the lower one holds its samples longer
     bool rarer = c->coarser.simulation->scene->aero.rate <= c->run->scene->aero.rate;
     const bough_companion_row *row = &c->row[c->present];
-    const bool held[] = {
-        [BOUGH_BY_AIR] = rarer && !row->air_sampled, [BOUGH_BY_CONTROL] = rarer && !row->sampled};
+    const bool held[] = {[BOUGH_BY_AIR] = rarer && !row->air_sampled,
+                         [BOUGH_BY_CONTROL] = rarer && !row->sampled,
+                         [BOUGH_BY_TIME] = false};
     bool resolved = missed_air(c->run) <= most_missed && !pitches_suddenly(c->run);
     pass_jumps(c);
     // steps of any length meet a contact at a chance time, so that both solutions err alike

@@ -1,11 +1,12 @@
+#include "apps/bough/model/aero_link.h"
 #include "apps/bough/model/companion.h"
 #include "apps/bough/model/validity.h"
 
 // How long the finer solution runs beside the run from the start, or from a jump on, and its most work.
 typedef struct extent {
     int steps;     // macro steps; more where an error grows without air
-    double part;   // work over that of run and companion, extrapolated to the end
-    double little; // work that is never too much, once for the start and once for all jumps [µs]
+    double part;   // work over that of run and companion, extrapolated to the end; once for the start and
+    double little; // once for all jumps, as this work, which is never too much [µs]
 } extent;
 
 static extent extent_of(const bough_scene *scene) {
@@ -36,6 +37,30 @@ static void snapshot_loads(const bough_simulation *s, bough_snapshot *to) {
         if (s->sampled[k].snapshot) s->sampled[k].snapshot(s->sampled[k].self, to);
 }
 
+// When the wind, or the ramp of the air's loads, has jumped (bough_wind_jump); returns how often. time: NULL:
+// not wanted.
+static int air_jump_times(const bough_simulation *run, double *time) {
+    if (!run->aero) return 0;
+    const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(run->aero));
+    double period = 1 / run->scene->aero.rate;
+    const double *ramp = run->scene->aero.ramp;
+    int n = ramp[0] > 0 && ramp[1] - ramp[0] < period;
+    if (n > 0 && time) time[0] = ramp[1];
+    for (int k = bough_wind_jump(wind, period, 0); k >= 0; k = bough_wind_jump(wind, period, k + 1), n++)
+        if (time) time[n] = bough_wind_row_time(wind, k + 1);
+    return n;
+}
+
+// Times of all jumps.
+static void expect_jumps(bough_arena *arena, const bough_simulation *run, bough_finer *f) {
+    int loads = bough_jump_times(run->scene, least_jump, NULL);
+    f->n_jump = loads + air_jump_times(run, NULL);
+    f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
+    bough_jump_times(run->scene, least_jump, f->jump);
+    air_jump_times(run, f->jump + loads);
+    qsort(f->jump, (size_t)f->n_jump, sizeof *f->jump, bough_ascending);
+}
+
 bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_finer *f) {
     static const int parts = BOUGH_FINEST_TIME | BOUGH_FINER_AIR;
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
@@ -45,9 +70,7 @@ bough_status bough_finer_build(bough_arena *arena, bough_simulation *run, bough_
     f->follows = true;
     f->ratio = errs_at_any_tolerance(scene) ? 1 : bough_finer_time_ratio();
     f->until = (extent_of(scene).steps + 0.5) * scene->simulation.macro_step;
-    f->n_jump = bough_jump_times(scene, least_jump, NULL);
-    f->jump = bough_arena_doubles(arena, (size_t)f->n_jump + 1);
-    bough_jump_times(scene, least_jump, f->jump);
+    expect_jumps(arena, run, f);
     snapshot_loads(run, &measure);
     f->loads = bough_arena_take(arena, measure.used + 1);
     return bough_ok();
@@ -68,10 +91,10 @@ static double next_jump(const bough_finer *f, double t) {
 }
 
 // The work that it may still take; unlimited at time 0.
-static double work_left(const bough_finer *f, const bough_master *run, double work, bool jumps) {
+static double work_left(const bough_finer *f, const bough_master *run, double work) {
     double whole = run->time > 0 ? work * run->duration / run->time : HUGE_VAL;
     extent most = extent_of(f->other.simulation->scene);
-    return most.part * whole + (jumps ? 2 : 1) * most.little - f->work;
+    return most.part * whole + most.little - f->work;
 }
 
 // The steps that it may take in the next macro step: the first alone may need more work than all may.
@@ -79,7 +102,7 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
     const bough_simulation *own = f->other.simulation;
     int most = own->scene->simulation.master.most_steps;
     if (own->master->time > f->from) return most;
-    double allowed = work_left(f, run, work, f->from > 0) / bough_other_run_work_of_step(&f->other);
+    double allowed = work_left(f, run, work) / bough_other_run_work_of_step(&f->other);
     return (int)fmin(most, fmax(least_steps, allowed));
 }
 
@@ -87,7 +110,9 @@ static int most_steps(const bough_finer *f, const bough_master *run, double work
 void bough_finer_begin(bough_finer *f, bough_simulation *run, double reach, double work) {
     const bough_master *m = run->master;
     double jump = f->other.simulation ? next_jump(f, m->time) : HUGE_VAL;
-    if (jump > m->time + reach || work_left(f, m, work, true) < 0 || !bough_master_sampled(m)) return;
+    if (jump > m->time + reach || !bough_master_sampled(m)) return;
+    if (!f->follows && f->from == 0) f->work = 0;
+    if (work_left(f, m, work) < 0) return;
     if (!f->follows) join(f, run), f->from = m->time, f->left = 0, f->run_steps = bough_simulation_steps(run);
     f->follows = true;
     f->until = jump + (extent_of(run->scene).steps + 0.5) * m->macro_step;
@@ -108,7 +133,7 @@ static bool gave_up(const bough_finer *f, int allowed, long steps, long by_run) 
 bool bough_finer_advance(bough_finer *f, bough_simulation *run, double work) {
     const bough_simulation *own = f->other.simulation;
     if (!f->follows || run->master->time > f->until) return f->follows = false;
-    if (work_left(f, run->master, work, f->from > 0) < 0) {
+    if (work_left(f, run->master, work) < 0) {
         f->left = own->master->time;
         return f->follows = false;
     }

@@ -300,18 +300,24 @@ static void sample_aero(void *self, double t, double *value) {
     value[2] = factor * data->torque * hub_spin(s);
 }
 
-// The undisturbed wind where the hub stood at the start, in ground axes, and the mean over the rotor
-// of the wind with the tower's influence relative to the blades, in the hub's.
+// Where the hub stood at the start, in ground axes.
 static void sample_wind(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    bough_mat3 axes = bough_body_pose(s, s->scene->turbine.rotor).rotation;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
+    value[0] = wind.x, value[1] = wind.y, value[2] = wind.z;
+}
+
+// The mean over the rotor of the wind with the tower's influence relative to the blades, in the hub's axes.
+static void sample_rotor_wind(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    bough_mat3 axes = bough_body_pose(s, s->scene->turbine.rotor).rotation;
     const bough_rotor_data *data = bough_aero_link_data(s->aero, NULL);
     bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
     double tip = hub_spin(s) * bough_simulation_rotor(s).radius;
     bool blows = fabs(mean.x) > 1e-12 * fabs(tip); // beyond rounding
-    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z, blows ? tip / mean.x : 0};
-    memcpy(value, values, sizeof values);
+    value[0] = mean.x, value[1] = mean.y, value[2] = mean.z;
+    value[3] = blows ? tip / mean.x : 0;
 }
 
 static void sample_nodes(void *self, double t, double *value) {
@@ -340,6 +346,7 @@ static void add_aero(bough_simulation *s, bough_channels *list) {
     const bough_scene_aero *aero = &s->scene->aero;
     bough_channel_group_add(list, sample_aero, s, BOUGH_CHANNELS_AIR);
     bough_channel_group_add(list, sample_wind, s, BOUGH_CHANNELS_WIND);
+    bough_channel_group_add(list, sample_rotor_wind, s, BOUGH_CHANNELS_ROTOR_WIND);
     bough_channels_group(list, sample_nodes, s);
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
         char blade[12], node[12];

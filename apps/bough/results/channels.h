@@ -18,8 +18,13 @@ typedef enum bough_quantity_kind {
 } bough_quantity_kind;
 
 // What a channel is sampled by. Samples of the air approximate a continuous quantity; those of a controller
-// are its output.
-typedef enum bough_sampling { BOUGH_CONTINUOUS, BOUGH_BY_AIR, BOUGH_BY_CONTROL } bough_sampling;
+// are its output; what is a function of time has no error.
+typedef enum bough_sampling {
+    BOUGH_CONTINUOUS,
+    BOUGH_BY_AIR,
+    BOUGH_BY_CONTROL,
+    BOUGH_BY_TIME
+} bough_sampling;
 
 typedef struct bough_channel {
     char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
