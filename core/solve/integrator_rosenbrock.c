@@ -10,6 +10,9 @@ enum { MOST_DRIFTED = 4 }; // steps with the same ∂f/∂t; every macro step fi
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
 enum { COARSE_AGE = 20 };  // the same of long steps
 enum { UNDAMPED_AGE = 2 }; // without damping, until the age is chosen by its effect
+// After a start the age is at most FIRST_AGE, and one more after each SETTLING steps: while a motion sets in,
+// old tangents of blades drive tower and hub.
+enum { FIRST_AGE = 2, SETTLING = 8 };
 
 static const double gamma_h = 0.4358665215084590; // γ
 static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
@@ -52,6 +55,7 @@ typedef struct rosenbrock {
     double new_error;     // of the last step with new tangents, over h³ [s⁻³]
     double least;         // error of the steps since the tangents were found
     int age, most_age;    // steps since the tangents were found, and after which they are renewed
+    int since;            // steps since the last start
     bool kept_twice;      // those of deforming members are older
     bool started;
     int drifted;               // steps since ∂f/∂t was found
@@ -141,7 +145,9 @@ static void choose_age(rosenbrock *m) {
 }
 
 // The age at which tangents are renewed though no step has failed.
-static int oldest(const rosenbrock *m) { return (int)fmin(m->most_age, m->useful); }
+static int oldest(const rosenbrock *m) {
+    return (int)fmin(FIRST_AGE + m->since / SETTLING, fmin(m->most_age, m->useful));
+}
 
 // theory (115): what turns is linearised where it will be, by the last step, in the middle of those to come.
 static bool linearise(rosenbrock *m, double t, const double *y, double h) {
@@ -272,7 +278,7 @@ static const char *cross(rosenbrock *m, double *t, double t1, double *y) {
         m->sum.steps++;
         if (m->age == 0) m->new_error = error / (h * h * h);
         m->least = m->age > 0 ? fmin(m->least, error) : error;
-        m->age++;
+        m->age++, m->since++;
         bool late = error > noticed && error > turned * m->least;
         if (late && m->ode.elastic_rate > 0) renew_earlier(m, error, h);
         m->drifted++;
@@ -288,6 +294,7 @@ static bough_status advance(void *self, double *t, double t1, bool restart, doub
     rosenbrock *m = self;
     if (restart || !m->started) {
         m->sum.starts++;
+        m->since = 0;
         m->started = true;
         m->last_step = 0;
         m->age = MOST_AGE;
