@@ -364,10 +364,11 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
         options->name, macro_step, advice->now.frequency, a->member[advice->now.body]->system.name,
         advice->now.growth);
     if (advice->macro_step > 0) {
-        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; macro_step: %.9g s is stable",
-                           advice->macro_step);
+        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
+                           "; macro_step: %.9g s is stable in this state", advice->macro_step);
     }
     if (advice->scheme) {
-        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s is stable", advice->scheme);
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s is stable in this state",
+                 advice->scheme);
     }
 }
