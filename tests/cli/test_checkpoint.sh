@@ -156,7 +156,7 @@ killed "$turbine" 40ms --set 'simulation.duration=1 s' --set simulation.error_sh
 # the companion's methods are chosen by the steps since its start, which every checkpoint is
 cat >../rotor.yaml <<'EOF'
 gravity: [0, 0, -9.81]
-simulation: {duration: 3.2 s, macro_step: 5 ms, error_bound: 0, coupling: {scheme: gauss-seidel}, output: {frames: 0.5 s}}
+simulation: {duration: 6.4 s, macro_step: 5 ms, error_bound: 0, coupling: {scheme: gauss-seidel}, output: {frames: 0.5 s}}
 bodies:
   - {name: hub, fidelity: rigid, mass: 5, inertia: [0.5, 0.3, 0.3], joint: {kind: revolute, axis: x, parent: ground, speed: 3 rad/s}}
   - {name: a, fidelity: rod, joint: {kind: fixed, parent: hub, placement: [move z 0.2]},
