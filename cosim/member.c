@@ -69,7 +69,8 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .linearise_ahead = system->ops->linearise_ahead ? linearise_ahead : NULL,
                      .factor = factor,
                      .solve = solve,
-                     .elastic_rate = system->elastic_rate};
+                     .elastic_rate = system->elastic_rate,
+                     .ahead = system->ops->linearise_ahead && system->ahead};
     return bough_integrator_create(arena, &ode, options, &m->integrator);
 }
 

@@ -109,7 +109,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     size_t n = (size_t)ode->n;
     m->ode = *ode;
     int age = options->coarse ? COARSE_AGE : MOST_AGE, of_tree = options->coarse ? COARSE_TREE_AGE : TREE_AGE;
-    m->kept = ode->linearise_ahead ? of_tree : age;
+    m->kept = ode->ahead ? of_tree : age;
     m->most_kept = 2 * age / m->kept;
     if (options->coarse) m->ode.elastic_rate /= 3;
     m->find = find_alone;
