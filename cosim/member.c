@@ -69,8 +69,7 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .linearise_ahead = system->ops->linearise_ahead ? linearise_ahead : NULL,
                      .factor = factor,
                      .solve = solve,
-                     .elastic_rate = system->elastic_rate,
-                     .ahead = system->ops->linearise_ahead && system->ahead};
+                     .elastic_rate = system->elastic_rate};
     return bough_integrator_create(arena, &ode, options, &m->integrator);
 }
 

@@ -421,18 +421,14 @@ bough_system bough_whole_system(bough_arena *arena, const bough_assembly *a, bou
     bough_assembly_states(a, initial);
     // of the body that is least damped for its stiffness
     double elastic_rate = 0;
-    bool ahead = false;
-    for (int i = 0; i < a->n_member; i++) {
+    for (int i = 0; i < a->n_member; i++)
         elastic_rate = fmax(elastic_rate, a->member[i]->system.elastic_rate);
-        ahead = ahead || (a->member[i]->system.ahead && a->n_follower > 0);
-    }
     return (bough_system){.name = name,
                           .kind = "assembly",
                           .n_state = a->n_state,
                           .scale = scale,
                           .initial = initial,
                           .elastic_rate = elastic_rate,
-                          .ahead = ahead,
                           .ops = &operations,
                           .self = evaluation};
 }

@@ -40,7 +40,6 @@ typedef struct bough_ode {
     bool (*factor)(void *self, double gamma); // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);     // in place
     double elastic_rate;                      // [1/s] as in system.h
-    bool ahead;                               // linearise_ahead linearises some where they will be
 } bough_ode;
 
 typedef enum bough_integrator_kind {

@@ -8,9 +8,7 @@ enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // steps with the same ∂f/∂t; every macro step finds it anew
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
-enum { COARSE_AGE = 12 };  // the same of long steps
-// A tree that turns with its members is linearised anew earlier than these, theory (115).
-enum { TREE_AGE = 8, COARSE_TREE_AGE = 4 };
+enum { COARSE_AGE = 20 };  // the same of long steps
 enum { UNDAMPED_AGE = 2 }; // without damping, until the age is chosen by its effect
 // After a start the age is at most FIRST_AGE, and one more after each SETTLING steps: while a motion sets in,
 // old tangents of blades drive tower and hub.
@@ -58,7 +56,7 @@ typedef struct rosenbrock {
     double least;         // error of the steps since the tangents were found
     int age, most_age;    // steps since the tangents were found, and after which they are renewed
     int since;            // steps since the last start
-    int times_kept, most_kept; // renewals in which those of deforming members were kept
+    bool kept_twice;      // those of deforming members are older
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     bough_rosenbrock_step now; // the step in progress
@@ -108,9 +106,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     rosenbrock *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
     m->ode = *ode;
-    int age = options->coarse ? COARSE_AGE : MOST_AGE, of_tree = options->coarse ? COARSE_TREE_AGE : TREE_AGE;
-    m->kept = ode->ahead ? of_tree : age;
-    m->most_kept = 2 * age / m->kept;
+    m->kept = options->coarse ? COARSE_AGE : MOST_AGE;
     if (options->coarse) m->ode.elastic_rate /= 3;
     m->find = find_alone;
     m->finder = m;
@@ -159,14 +155,14 @@ static bool linearise(rosenbrock *m, double t, const double *y, double h) {
     if (!ode->linearise_ahead) return ode->linearise(ode->self, t, y);
     double by = m->last_step > 0 ? oldest(m) / 2.0 * fmin(h / m->last_step, 1) : 0;
     for (int k = 0; k < ode->n; k++) m->ahead[k] = y[k] + by * (y[k] - m->last[k]);
-    return ode->linearise_ahead(ode->self, t, y, m->ahead, m->times_kept > 0);
+    return ode->linearise_ahead(ode->self, t, y, m->ahead, m->kept_twice);
 }
 
 static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
     bool due = m->age == oldest(m), compare = undamped(m, gamma / gamma_h) && due && m->factored > 0;
     bool same = fabs(m->factored - gamma) <= rounding * gamma;
-    bool keeps = due && same && !compare && m->age == m->kept && m->times_kept + 1 < m->most_kept;
-    m->times_kept = keeps ? m->times_kept + 1 : 0;
+    // tangents of deforming members are kept for the same number of steps once more
+    m->kept_twice = due && same && !compare && !m->kept_twice && m->age == m->kept;
     if (due) m->useful = fmin(older * m->useful, m->kept);
     // the last increment under old tangents, for comparison with renewed ones
     if (compare) filter_increment(m, m->old);

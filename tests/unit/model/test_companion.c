@@ -23,7 +23,7 @@ TEST(the_whole_error_is_estimated) {
         for (int w = 6; w < 8 && c == 1; w++) assert_true(b->estimate[w] > b->error[w] / 2); // RootF
         // tangents serve nearly as many steps as the run's
         bough_statistics coarser = bough_master_statistics(b->r.companion->coarser.simulation->master);
-        assert_true(coarser.jacobians < coarser.steps / 12);
+        assert_true(coarser.jacobians < coarser.steps / 4);
     }
 }
 

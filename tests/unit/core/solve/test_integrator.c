@@ -126,7 +126,7 @@ static problem *create_scaled(const method *m, const double *scale, double rtol)
     assert_non_null(p);
     p->arena = check_memory();
     p->wall = (double)INFINITY;
-    bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, NULL, factor, solve, 0, false};
+    bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, NULL, factor, solve, 0};
     bough_integrator_options options = {.kind = m->kind, .rtol = rtol};
     check_ok(bough_integrator_create(p->arena, &ode, &options, &p->micro));
     return p;

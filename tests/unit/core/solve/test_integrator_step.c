@@ -85,7 +85,7 @@ static void exact(double t, double *y) {
 static void build(problem *p, method m, double step, double *y) {
     static const double scale[N] = {1, 1, 1, 1};
     *p = (problem){.arena = check_memory(), .m = m};
-    bough_ode ode = {"sample", m.n, scale, p, derivative, NULL, linearise, NULL, factor, solve, 0, false};
+    bough_ode ode = {"sample", m.n, scale, p, derivative, NULL, linearise, NULL, factor, solve, 0};
     // Newton's method of generalised-α to rounding; the Rosenbrock method takes all steps that it is given
     bough_integrator_options options = {
         .kind = m.kind, .rtol = m.n > LINEAR ? 1e3 : 1e-10, .step = step, .rho = m.rho};
@@ -258,7 +258,7 @@ TEST(tangents_are_kept_where_the_motion_changes_the_error) {
     bough_arena *arena = check_memory();
     bough_ode ode = {
         "lag",        1, scale, &divisor, forced_derivative, NULL, forced_linearise, NULL, forced_factor,
-        forced_solve, 1, false};
+        forced_solve, 1};
     bough_integrator_options options = {.kind = BOUGH_ROSENBROCK, .rtol = 1e-3, .step = 0.01};
     bough_integrator micro;
     check_ok(bough_integrator_create(arena, &ode, &options, &micro));
@@ -280,7 +280,7 @@ TEST(undamped_systems_keep_tangents_that_hardly_change) {
         spring p;
         bough_arena *arena = check_memory();
         bough_ode ode = {"spring",         4,    scale,         &p,           spring_derivative, NULL,
-                         spring_linearise, NULL, spring_factor, spring_solve, INFINITY,          false};
+                         spring_linearise, NULL, spring_factor, spring_solve, INFINITY};
         bough_integrator_options options = {
             .kind = BOUGH_ROSENBROCK, .rtol = 1e3, .step = 0.01, .coarse = coarse};
         bough_integrator micro;
