@@ -5,8 +5,8 @@
 // How long the finer solution runs beside the run from the start, or from a jump on, and its most work.
 typedef struct extent {
     int steps;     // macro steps; more where an error grows without air
-    double part;   // work over that of run and companion, extrapolated to the end; once for the start and
-    double little; // once for all jumps, as this work, which is never too much [µs]
+    double part;   // most work over that of run and companion, extrapolated to the end
+    double little; // work that is added to it [µs]; both hold for the start and for all jumps separately
 } extent;
 
 static extent extent_of(const bough_scene *scene) {
